@@ -24,7 +24,7 @@ for target in "$@"; do
 	windows) packages="$packages g++-mingw-w64-x86-64-posix wine64" ;;
 	wasm) packages="$packages emscripten node-typescript" ;;
 	debian) packages="$packages lintian dpkg-dev fakeroot" ;;
-	library) packages="$packages python3-numpy python3-matplotlib abigail-tools patchelf mono-mcs mono-runtime" ;;
+	library) packages="$packages python3-numpy python3-matplotlib patchelf mono-mcs mono-runtime" ;;
 	farm) packages="$packages slurm-wlm munge snakemake procps" ;;
 	*)
 		echo "setup.sh: found '$target', expected aarch64, windows, wasm, debian, targets, farm, library or nothing" >&2

@@ -11,6 +11,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <limits>
 #include <string>
@@ -30,6 +31,9 @@ nook_array rowsOf(const std::vector<double>& values)
 {
 	return array(values.data(), {values.size() / 3, 3});
 }
+
+// What programs were compiled with: another layout is another NOOK_ABI.
+static_assert(NOOK_ABI == 1 && sizeof(nook_array) == 48 && offsetof(nook_array, type) == 8 && offsetof(nook_array, shape) == 16);
 
 // Status of making a level, which is destroyed again.
 nook_status levelStatus(const nook_array* positions, const nook_array* triangles, const nook_array* normals = nullptr,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Visibility at the corners of a floor beside a wall: cc visibility.c -lnook, or CMakeLists.txt here. */
+/* Visibility in the middle of a floor and next to its wall: cc visibility.c -lnook, or CMakeLists.txt here. */
 #include <nook/nook.h>
 
 #include <stdio.h>
@@ -35,7 +35,7 @@ int main(void)
 
 	if (nook_require(NOOK_ABI) != NOOK_OK || nook_level_create(&vertices, &corners, NULL, NULL, NULL, &level) != NOOK_OK)
 		return stop("level");
-	if (nook_options_create(&options) != NOOK_OK || nook_options_number(options, "radius", 3.0) != NOOK_OK ||
+	if (nook_options_create(&options) != NOOK_OK || nook_options_number(options, "radius", 1.5) != NOOK_OK ||
 		nook_options_set(options, "rays", "1024") != NOOK_OK)
 		return stop("options");
 	if (nook_run_visibility(level, &at, &about, options, &result) != NOOK_OK ||

@@ -27,7 +27,7 @@
 #define NOOK_ABI 1
 
 #ifndef NOOK_API
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(_WIN32)
 #define NOOK_API __attribute__((visibility("default")))
 #else
 #define NOOK_API

@@ -71,8 +71,8 @@ bool waitForBytes(int socket)
 
 constexpr int kStartTime_s = 300; // loading some 250 libraries on a busy machine
 
-// The run path of this program, or of the library that this code is in, which leads to the workers both in the build folder and when
-// installed.
+// The run path of this program, or of the library that this code is in, which leads to the workers both in the build folder and
+// when installed.
 std::vector<std::string> libraryFolders()
 {
 	Dl_info here{};

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Usage: python_test.py PROGRAM LIBRARY SOURCE. The Python package: the program's bytes, arrays of all kinds, errors, Ctrl-C."""
+"""Usage: python_test.py PROGRAM SOURCE LIBRARY. The Python package: the program's bytes, arrays of all kinds, errors, Ctrl-C."""
 
 import _thread
 import json
@@ -12,7 +12,7 @@ import threading
 import time
 import unittest
 
-PROGRAM, LIBRARY, SOURCE = sys.argv[1:4]
+PROGRAM, SOURCE, LIBRARY = sys.argv[1:4]
 os.environ["NOOK_LIBRARY"] = LIBRARY
 sys.path.insert(0, os.path.join(SOURCE, "python"))
 

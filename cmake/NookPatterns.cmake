@@ -122,8 +122,8 @@ function(_nook_make stem comment outputs inputs)
 	string(REPLACE ";" " " recipe "${ARGN}")
 	file(CONFIGURE OUTPUT "${stem}.recipe" CONTENT "nook ${recipe}\n" @ONLY)
 	add_custom_command(OUTPUT ${outputs}
-		COMMAND nook::nook ${ARGN}
-		DEPENDS "$<TARGET_FILE:nook::nook>" "${stem}.recipe" ${inputs}
+		COMMAND nook::tool ${ARGN}
+		DEPENDS "$<TARGET_FILE:nook::tool>" "${stem}.recipe" ${inputs}
 		COMMENT "${comment}"
 		VERBATIM)
 endfunction()

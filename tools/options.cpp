@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
 
+#include "call.h"
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -487,10 +488,15 @@ std::optional<WorkShare> shareOf(const std::string& text)
 	return number >= 1 && number <= of && of <= kMaxShares ? std::optional(WorkShare{number, of}) : std::nullopt;
 }
 
+OptionRow threadsRow(int& threads)
+{
+	return {"--threads", takesWhole(threads, 1, 1024),
+			"Threads, 1 to 1024 (default: all processors); never changes a byte of what is made"};
+}
+
 void addRun(CLI::App& app, Outputs& outputs, bool shares)
 {
-	addOptions(app, {{"--threads", takesWhole(outputs.threads, 1, 1024),
-					  "Threads, 1 to 1024 (default: all processors); never changes a byte of what is made"},
+	addOptions(app, {threadsRow(outputs.threads),
 					 {"--progress", takesText(outputs.progress, "FILE"),
 					  "Stages, shares done and seconds left while it works, a JSON object a line; - is standard output"}});
 	if (!shares)
@@ -592,6 +598,24 @@ void checkName(const std::string& name)
 	}
 }
 
+void giveSamples(std::span<const Pattern> variants, std::vector<std::size_t> shape)
+{
+	std::vector<double> points;
+	std::vector<double> weights;
+	const std::size_t columns = variants.front().domain == Domain::disk ? 2 : 3;
+	for (const Pattern& variant : variants)
+	{
+		for (const glm::dvec3& point : variant.points)
+		{
+			points.insert(points.end(), &point.x, &point.x + columns);
+		}
+		weights.insert(weights.end(), variant.weights.begin(), variant.weights.end());
+	}
+	give<double>("weights", weights, shape);
+	shape.push_back(columns);
+	give<double>("points", points, shape);
+}
+
 void addSide(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::vector<std::string>& read)
 {
 	if (!outputs.json.empty())
@@ -610,7 +634,7 @@ void addSummary(OutputSet& files, const Outputs& outputs, const std::string& fac
 	{
 		files.add(outputs.json, facts);
 	}
-	if (isStdoutFree(outputs))
+	if (t_call == nullptr && isStdoutFree(outputs))
 	{
 		files.add("-", lines);
 	}
@@ -618,6 +642,11 @@ void addSummary(OutputSet& files, const Outputs& outputs, const std::string& fac
 
 void warn(const std::string& message)
 {
+	if (t_call != nullptr)
+	{
+		t_call->warnings.push_back(oneLine(message));
+		return;
+	}
 	std::fprintf(stderr, "nook: warning: %s\n", oneLine(message).c_str());
 }
 

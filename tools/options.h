@@ -221,6 +221,7 @@ void addCache(CLI::App& app);
 
 // --threads and --progress; --cache and --share as well for verbs whose work is in stages of units (core/work_units.h).
 void addRun(CLI::App& app, Outputs& outputs, bool shares = false);
+OptionRow threadsRow(int& threads);
 
 // "K/N", or nothing if that is no share.
 std::optional<WorkShare> shareOf(const std::string& text);
@@ -243,6 +244,9 @@ void checkDistinct(const std::vector<std::string>& written, const std::vector<st
 
 // Empty (none given) or an identifier.
 void checkName(const std::string& name);
+
+// For a caller (call.h): points and weights, of that shape before their coordinates.
+void giveSamples(std::span<const Pattern> variants, std::vector<std::size_t> shape);
 
 // Adds the facts and the list of files read, where they are asked for.
 void addSide(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::vector<std::string>& read);

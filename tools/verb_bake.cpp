@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook bake: a level → the same level with visibility at its vertices or in a texture, or the visibility of probes.
+#include "call.h"
 #include "feature_options.h"
 #include "scene_options.h"
 
@@ -249,6 +250,15 @@ Made makeVertices(const BakeOptions& options, const Tracer& tracer, Facts& facts
 												   : BakedKind::volume_difference;
 	const std::string bytes =
 		levelGlb(baked, kProgram, {bake.visibility, options.color, {}, {}, bake.back, bake.bent, bake.bent_back, kind});
+	give<float>("visibility", bake.visibility, {bake.visibility.size()});
+	give<float>("back", bake.back, {bake.back.size()});
+	give<float>("bent", bake.bent, {bake.bent.size(), 3});
+	give<float>("bent_back", bake.bent_back, {bake.bent_back.size(), 3});
+	if (bake.refined)
+	{
+		give<double>("positions", baked.positions, {baked.positions.size(), 3});
+		give<uint32_t>("triangles", baked.triangles, {baked.triangles.size(), 3});
+	}
 	addResult(facts, options, bake, bytes.size());
 	addCheck(facts, check, "other points of the surface");
 	if (settings.base)
@@ -296,6 +306,7 @@ Made makeTexture(const BakeOptions& options, const Tracer& tracer, Facts& facts,
 	}
 	const std::string png = pngBytes(bake.size_px, bake.size_px, rgb, {});
 	const std::string bytes = levelGlb(level, kProgram, {{}, false, uvs, png, {}, {}, {}});
+	give<uint8_t>("texels", bake.values, {static_cast<std::size_t>(bake.size_px), static_cast<std::size_t>(bake.size_px)});
 	facts.text("coordinates", second.empty() ? "first" : "second");
 	facts.whole("texels_across", bake.size_px);
 	facts.whole("charts", bake.charts);
@@ -330,6 +341,9 @@ Made makeProbes(const BakeOptions& options, const Tracer& tracer, Facts& facts, 
 		made.bytes.push_back(formatOf(path, kProbeFormats) == ".glsl" ? probesGlsl(grid, kProgram) : probesKtx2(grid, kProgram));
 	}
 	const glm::dvec3 count(grid.count);
+	const glm::uvec3 along(grid.count);
+	give<uint8_t>("texels", grid.texels, {along.z, along.y, along.x, 4});
+	give<double>("origin", std::vector{grid.origin}, {3});
 	facts.number("spacing_m", grid.spacing_m);
 	facts.numbers("origin_m", {grid.origin.x, grid.origin.y, grid.origin.z});
 	facts.numbers("count", {count.x, count.y, count.z});
@@ -354,7 +368,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 	std::erase(inputs, "");
 	checkOutputs(options.outputs, probes ? std::span<const std::string_view>(kProbeFormats) : kBakeFormats, inputs);
 	const RunSettings how = progress.start("bake", options.outputs.threads, options.outputs.progress);
-	LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
+	LoadedLevel loaded = t_call != nullptr ? *t_call->level : loadLevel(options.level.level, options.level.load, how);
 	checkRead(options.outputs, loaded.level.files);
 	std::vector<std::string> read = loaded.level.files;
 	if (!options.volumes.empty())

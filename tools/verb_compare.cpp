@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook compare: two visibility images → errors, a picture of them, and a verdict.
+#include "call.h"
 #include "options.h"
 
 #include "core/error.h"
@@ -108,7 +109,7 @@ template <class Picture> std::vector<uint8_t> readMask(const std::string& path, 
 {
 	if (path.empty())
 	{
-		return {};
+		return t_call != nullptr ? t_call->counted : std::vector<uint8_t>{};
 	}
 	SurfaceMask mask = readSurfaceMask(path);
 	if (mask.width_px != reference.width_px || mask.height_px != reference.height_px)
@@ -218,14 +219,15 @@ std::string summaryOf(const CompareOptions& options, const VisibilityImage& test
 					  const Comparison& c, const std::optional<double>& uncertainty, const Verdict& verdict)
 {
 	Facts facts = headFacts(options, test, reference, c.pixels);
-	facts.measures("errors", {{"rmse", c.rmse},
-							  {"mae", c.mae},
-							  {"mean_error", c.mean_error},
-							  {"p95", c.p95},
-							  {"max", c.max},
-							  {"ssim", c.ssim.value_or(std::numeric_limits<double>::quiet_NaN())},
-							  {"flip", c.flip},
-							  {"eq14", c.eq14}});
+	const std::vector<Measure> errors{
+		{"rmse", c.rmse}, {"mae", c.mae},  {"mean_error", c.mean_error},
+		{"p95", c.p95},   {"max", c.max},  {"ssim", c.ssim.value_or(std::numeric_limits<double>::quiet_NaN())},
+		{"flip", c.flip}, {"eq14", c.eq14}};
+	for (const Measure& error : errors)
+	{
+		give<double>(error.name.c_str(), std::vector{error.value}, {});
+	}
+	facts.measures("errors", errors);
 	facts.whole("worst_x", c.worst.x);
 	facts.whole("worst_y", c.worst.y);
 	facts.number("worst_test", c.worst.test);
@@ -287,8 +289,8 @@ std::string bentSummary(const CompareOptions& options, const BentImage& test, co
 // Directions in place of visibility.
 void runBent(const CompareOptions& options)
 {
-	const BentImage test = bentOf(readImage(options.test), options.test);
-	const BentImage reference = bentOf(readImage(options.reference), options.reference);
+	const BentImage test = bentOf(imageOf(options.test), options.test);
+	const BentImage reference = bentOf(imageOf(options.reference), options.reference);
 	const std::vector<uint8_t> counted = readMask(options.mask, reference);
 	const BentAngles angles = anglesBetween(test, reference, counted);
 	OutputSet files;
@@ -310,8 +312,8 @@ void run(CompareOptions& options, VerbProgress& progress)
 		runBent(options);
 		return;
 	}
-	const VisibilityImage test = visibilityOf(readImage(options.test), options.test, options.channel);
-	const VisibilityImage reference = visibilityOf(readImage(options.reference), options.reference, options.channel);
+	const VisibilityImage test = visibilityOf(imageOf(options.test), options.test, options.channel);
+	const VisibilityImage reference = visibilityOf(imageOf(options.reference), options.reference, options.channel);
 	checkSameSize(test, reference);
 	const std::vector<uint8_t> counted = readMask(options.mask, reference);
 	options.settings.counted = counted;

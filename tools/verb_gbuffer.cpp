@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook gbuffer: a level and a camera, or a G-buffer of an engine → depth and normals.
+#include "call.h"
 #include "scene_options.h"
 
 #include "scene/tracer.h"
@@ -80,6 +81,16 @@ struct PictureFacts
 	}
 };
 
+void givePixels(const GBuffer& gbuffer)
+{
+	const auto height = static_cast<std::size_t>(gbuffer.height_px);
+	const auto width = static_cast<std::size_t>(gbuffer.width_px);
+	give<float>("depth", gbuffer.depth, {height, width});
+	give<float>("normals", gbuffer.normals, {height, width, 3});
+	give<double>("projection", std::vector{gbuffer.view.projection}, {16});
+	give<double>("world_to_camera", std::vector{gbuffer.view.camera_from_world}, {16});
+}
+
 // From what an engine wrote to what every verb reads without options.
 void convert(const GBufferOptions& options, VerbProgress& progress)
 {
@@ -128,7 +139,8 @@ void cast(const GBufferOptions& options, VerbProgress& progress)
 	}
 	checkOutputs(outputs, kGBufferFormats, {options.level.level});
 	const RunSettings settings = progress.start("gbuffer", options.outputs.threads, options.outputs.progress);
-	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, settings);
+	const std::shared_ptr<const LoadedLevel> shared = levelOf(options.level.level, options.level.load, settings);
+	const LoadedLevel& loaded = *shared;
 	checkRead(outputs, loaded.level.files);
 	const Tracer tracer(loaded.level, settings);
 	const NormalKind normals = options.normals.value_or(NormalKind::geometric);
@@ -142,8 +154,9 @@ void cast(const GBufferOptions& options, VerbProgress& progress)
 		const GBuffer gbuffer =
 			castGBuffer(tracer, view.view, options.camera.width_px, options.camera.height_px, normals, settings);
 		pictures.add(gbuffer);
-		const std::string bytes =
-			gbufferBytes(gbuffer, notesOf(loaded.level.name, view.name, kNormalKinds[static_cast<std::size_t>(normals)]));
+		givePixels(gbuffer);
+		const Notes notes = notesOf(loaded.level.name, view.name, kNormalKinds[static_cast<std::size_t>(normals)]);
+		const std::string bytes = outputs.files.empty() ? "" : gbufferBytes(gbuffer, notes);
 		for (std::size_t file = cameras.size(); file < outputs.files.size(); file += count)
 		{
 			files.add(outputs.files[file], bytes);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook pattern: recipe → one pattern, in the formats asked for.
+#include "call.h"
 #include "options.h"
 
 #include "core/file.h"
@@ -80,6 +81,7 @@ void run(PatternOptions& options, VerbProgress& progress)
 	facts.text("domain", nameOf(pattern.domain));
 	facts.whole("count", pattern.count());
 	facts.measures("quality", measuresOf(quality));
+	giveSamples({&pattern, 1}, {pattern.count()});
 	addSide(files, options.outputs, facts.json(), {});
 	files.commit();
 }

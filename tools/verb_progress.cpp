@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verb_progress.h"
 
+#include "call.h"
+
 #include "core/file.h"
 #include "core/parallel.h"
 #include "core/system.h"
@@ -243,6 +245,11 @@ RunSettings VerbProgress::start(std::string_view verb, int threads, const std::s
 {
 	RunSettings run;
 	run.threads = threads > 0 ? threads : availableThreads();
+	if (t_call != nullptr)
+	{
+		run.progress = t_call->progress;
+		return run;
+	}
 	run.units = m_units;
 	m_page = pageProgress();
 	if (!log.empty())

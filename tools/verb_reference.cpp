@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook reference: a level and the pixels of a G-buffer, or given points → visibility by rays, with its standard error.
+#include "call.h"
 #include "scene_options.h"
 
 #include "core/decimal.h"
@@ -243,13 +244,15 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 
 	std::vector<std::string> read{input};
 	const GBuffer gbuffer = image ? readGBuffer(input, options.import) : GBuffer{};
-	const std::vector<ReferencePoint> points = image ? std::vector<ReferencePoint>{} : readPoints(input);
-	std::optional<LoadedLevel> loaded;
+	const std::vector<ReferencePoint> points = image               ? std::vector<ReferencePoint>{}
+											   : t_call != nullptr ? std::move(t_call->points)
+																   : readPoints(input);
+	std::shared_ptr<const LoadedLevel> loaded;
 	std::optional<Tracer> tracer;
 	Facts facts = verbFacts("reference");
 	if (!options.level.empty())
 	{
-		loaded = loadLevel(options.level, options.load, run_settings);
+		loaded = levelOf(options.level, options.load, run_settings);
 		checkRead(options.outputs, loaded->level.files);
 		const std::optional<Vicinity> near = image ? reachOf(loaded->level, gbuffer, options.settings) : std::nullopt;
 		tracer.emplace(loaded->level, run_settings, near ? &*near : nullptr);
@@ -276,6 +279,16 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 	}
 	addSettings(facts, options);
 	summarise(facts, values);
+	give("visibility", values, &ReferenceValue::visibility);
+	give("standard_error", values, &ReferenceValue::standard_error);
+	give("rays", values, &ReferenceValue::rays);
+	if (bent)
+	{
+		std::vector<glm::vec3> directions;
+		std::transform(values.begin(), values.end(), std::back_inserter(directions),
+					   [](const ReferenceValue& value) { return value.bent; });
+		give<float>("bent", directions, {directions.size(), 3});
+	}
 	addSide(files, options.outputs, facts.json(), read);
 	files.commit();
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook shade: a G-buffer → visibility by a screen-space method, by occlusion volumes or by both, on the CPU or through OpenGL.
+#include "call.h"
 #include "feature_options.h"
 #include "scene_options.h"
 
@@ -572,11 +573,14 @@ void run(ShadeOptions& options, VerbProgress& progress)
 	settle(options);
 	check(options);
 	const RunSettings settings = progress.start("shade", options.outputs.threads, options.outputs.progress);
-	const GBuffer gbuffer = readGBuffer(options.gbuffer, options.import);
+	const GBuffer gbuffer = gbufferOf(options.gbuffer, options.import);
 	const Composed drawn = draw(options, gbuffer, settings);
 	const Picture picture = withoutGuard(options.gbuffer, gbuffer, drawn.shaded.visibility, options.guard_px);
 	const std::vector<glm::vec3> bent =
 		options.compose.shade.slices.bent ? withoutGuard(gbuffer, drawn.shaded.bent, options.guard_px) : std::vector<glm::vec3>{};
+	const std::vector<std::size_t> size{static_cast<std::size_t>(picture.height_px), static_cast<std::size_t>(picture.width_px)};
+	give<float>("visibility", picture.values, size);
+	give<float>("bent", bent, {size[0], size[1], 3});
 	const Notes notes = notesOf(options, drawn);
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook tile: a pattern → its variants for the pixels of a blur window.
+#include "call.h"
 #include "options.h"
 
 #include "core/system.h"
@@ -125,6 +126,7 @@ void run(TileOptions& options, VerbProgress& progress)
 	facts.whole("size", tile.size);
 	facts.measures("quality", measuresOf(quality));
 	facts.measures("behind", measuresBehind(tile, recipe.filters, recipe.ema, kMaxShareSteps, settings));
+	giveSamples(tile.variants, {tile.variants.size(), base.count()});
 	addSide(files, options.outputs, facts.json(), inputs);
 	files.commit();
 }

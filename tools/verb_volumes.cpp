@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook volumes: a level → its ambient occlusion volumes, for programs that draw them.
+#include "call.h"
 #include "scene_options.h"
 
 #include "core/error.h"
@@ -297,7 +298,8 @@ void run(VolumeOptions& options, VerbProgress& progress)
 	const VolumeSettings& settings = options.settings;
 	const RunSettings how = progress.start("volumes", options.outputs.threads, options.outputs.progress);
 	Times times;
-	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
+	const std::shared_ptr<const LoadedLevel> shared = levelOf(options.level.level, options.level.load, how);
+	const LoadedLevel& loaded = *shared;
 	checkRead(options.outputs, loaded.level.files);
 	times.step("level");
 	addInputs(loaded.level.files, how);
@@ -319,6 +321,11 @@ void run(VolumeOptions& options, VerbProgress& progress)
 		times.step("16-bit numbers");
 	}
 
+	const Occluders& occluders = built.set.occluders;
+	give<double>("corners", occluders.corners, {occluders.corners.size(), 3});
+	give("first_corner", occluders.polygons, &Occluder::first_corner);
+	give("corner_count", occluders.polygons, &Occluder::corner_count);
+	give("alpha", occluders.polygons, &Occluder::alpha);
 	Facts facts = verbFacts("volumes");
 	addLevelFacts(facts, loaded);
 	describeBuilt(built, file, settings, quantised, facts);
@@ -333,7 +340,10 @@ void run(VolumeOptions& options, VerbProgress& progress)
 		files.add("-", facts.lines());
 	}
 	files.commit();
-	times.say();
+	if (t_call == nullptr)
+	{
+		times.say();
+	}
 	for (const std::string& warning : built.warnings)
 	{
 		warn(warning);

@@ -63,12 +63,25 @@ private:
 // Waits up to a twentieth of a second; true if there is data to read or the other end is closed.
 inline constexpr int kWaitsASecond = 20;
 
+bool waitForBytes(int socket)
+{
+	pollfd waiting{socket, POLLIN, 0};
+	return ::poll(&waiting, 1, 1000 / kWaitsASecond) > 0;
+}
+
 constexpr int kStartTime_s = 300; // loading some 250 libraries on a busy machine
 
-// The run path of this program, which leads to the workers both in the build folder and when installed.
+// The run path of this program, or of the library that this code is in, which leads to the workers both in the build folder and
+// when installed.
 std::vector<std::string> libraryFolders()
 {
-	void* const self = ::dlopen(nullptr, RTLD_LAZY);
+	Dl_info here{};
+	void* self = nullptr;
+	if (::dladdr(reinterpret_cast<const void*>(&waitForBytes), &here) != 0) // NOLINT: what dladdr takes
+	{
+		self = ::dlopen(here.dli_fname, RTLD_LAZY | RTLD_NOLOAD); // null for a program
+	}
+	self = self == nullptr ? ::dlopen(nullptr, RTLD_LAZY) : self;
 	Dl_serinfo size{};
 	if (self == nullptr || ::dlinfo(self, RTLD_DI_SERINFOSIZE, &size) != 0)
 	{
@@ -159,12 +172,6 @@ std::vector<char*> environment()
 	}
 	words.push_back(nullptr);
 	return words;
-}
-
-bool waitForBytes(int socket)
-{
-	pollfd waiting{socket, POLLIN, 0};
-	return ::poll(&waiting, 1, 1000 / kWaitsASecond) > 0;
 }
 
 WorkerProcess::WorkerProcess(const std::string& program)

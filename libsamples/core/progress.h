@@ -16,7 +16,7 @@ namespace nook
 {
 
 // Called with a stage's name and its finished share: 0 when the stage begins, 1 when it ends, increasing between. Other stages may
-// begin and end inside it. May be called from several threads, one at a time; must not throw. May be empty.
+// begin and end inside it. May be called from several threads, one at a time; throws to cancel, but not at 1. May be empty.
 using Progress = std::function<void(std::string_view stage, double share)>;
 
 class WorkUnits;

@@ -26,7 +26,13 @@ public:
 	StartProgress& operator=(const StartProgress&) = delete;
 	~StartProgress()
 	{
-		m_progress.finish(m_left);
+		try
+		{
+			m_progress.finish(m_left);
+		}
+		catch (...) // the run is cancelled, which its next step reports again
+		{
+		}
 	}
 
 	void step()

@@ -396,6 +396,24 @@ LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& 
 	return keptLevel(levels, settings, run, [&] { return readLevels(levels, settings, run); });
 }
 
+LoadedLevel loadLevel(Level level, bool strict, std::vector<uint32_t>& vertices, const RunSettings& run)
+{
+	std::vector<glm::vec2> halves(level.positions.size()); // of indices: 32-bit floats hold 16 bits
+	for (std::size_t i = 0; i < halves.size(); ++i)
+	{
+		halves[i] = {static_cast<float>(i >> 16U), static_cast<float>(i & 0xFFFFU)};
+	}
+	LoadedLevel loaded{std::move(level), {}};
+	loaded.diagnosis = cleanLevel(loaded.level, run, &halves);
+	LoadSettings settings;
+	settings.strict = strict;
+	checkCleaned(loaded, loaded.level.name, settings);
+	vertices.resize(halves.size());
+	std::transform(halves.begin(), halves.end(), vertices.begin(),
+				   [](glm::vec2 half) { return (static_cast<uint32_t>(half.x) << 16U) + static_cast<uint32_t>(half.y); });
+	return loaded;
+}
+
 std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings& settings, const Level& level,
 									 const RunSettings& run)
 {

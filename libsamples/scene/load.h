@@ -93,6 +93,10 @@ LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, con
 // Requires at least one. Also throws if together they have more triangles than a level may have.
 LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run);
 
+// Cleans and diagnoses a level from memory, whose indices are in range. `vertices`: for each vertex that is left, its index before.
+// Throws Error (invalid_input) if no triangle is left, or there are findings under `strict`.
+LoadedLevel loadLevel(Level level, bool strict, std::vector<uint32_t>& vertices, const RunSettings& run);
+
 // Drops unusable triangles and reports oddities. Keeps every triangle that a ray can hit, once. `more`, one per vertex, is filtered
 // like the vertices and affects nothing else.
 Diagnosis cleanLevel(Level& level, const RunSettings& run, std::vector<glm::vec2>* more = nullptr);

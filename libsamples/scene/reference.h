@@ -142,9 +142,12 @@ private:
 
 // Reads points from a file and writes reference visibility.
 
+// A point from another program; none if a position is further than kFarthest_m or not a number, or the normal has no direction.
+// Positions are assumed to be rounded to 32 bits: rays start that much above them.
+std::optional<ReferencePoint> pointOf(glm::dvec3 position, glm::dvec3 normal);
+
 // Comma-separated rows x,y,z,nx,ny,nz (position in metres, normal of any length), after an optional header with these names and
-// comments (#). Positions are assumed to be rounded to 32 bits: rays start that much above them. Throws Error: file; invalid_input
-// with the line.
+// comments (#). Throws Error: file; invalid_input with the line.
 std::vector<ReferencePoint> readPoints(const std::string& path);
 
 // Channels `visibility` and `standard_error`, 32-bit floats.

@@ -69,6 +69,18 @@ std::string withoutBlanks(std::string_view text)
 
 } // namespace
 
+std::optional<ReferencePoint> pointOf(glm::dvec3 position, glm::dvec3 normal)
+{
+	const double length = glm::length(normal);
+	const glm::dvec3 size = glm::abs(position);
+	const bool near = size.x <= kFarthest_m && size.y <= kFarthest_m && size.z <= kFarthest_m; // false for NaN
+	if (!(length > 0.0) || !std::isfinite(length) || !near)
+	{
+		return std::nullopt;
+	}
+	return ReferencePoint{position, normal / length, roundingOf(size.x) + roundingOf(size.y) + roundingOf(size.z)};
+}
+
 std::vector<ReferencePoint> readPoints(const std::string& path)
 {
 	const std::string text = readFile(path);
@@ -88,17 +100,15 @@ std::vector<ReferencePoint> readPoints(const std::string& path)
 		}
 		first = false;
 		const std::optional<std::array<double, 6>> n = parseRow(row);
-		const glm::dvec3 normal = n ? glm::dvec3((*n)[3], (*n)[4], (*n)[5]) : glm::dvec3(0.0);
-		const double length = glm::length(normal);
-		const glm::dvec3 position = n ? glm::dvec3((*n)[0], (*n)[1], (*n)[2]) : glm::dvec3(0.0);
-		const glm::dvec3 size = glm::abs(position);
-		if (!n || !(length > 0.0) || !std::isfinite(length) || std::max({size.x, size.y, size.z}) > kFarthest_m)
+		const std::optional<ReferencePoint> point =
+			n ? pointOf({(*n)[0], (*n)[1], (*n)[2]}, {(*n)[3], (*n)[4], (*n)[5]}) : std::nullopt;
+		if (!point)
 		{
 			throw Error(ExitCode::invalid_input, path + ":" + std::to_string(line) + ": found '" + std::string(row.substr(0, 80)) +
 													 "', expected six numbers " + std::string(kHeader) +
 													 ", positions to 1e15 m and a normal that is not 0");
 		}
-		points.push_back({position, normal / length, roundingOf(size.x) + roundingOf(size.y) + roundingOf(size.z)});
+		points.push_back(*point);
 	}
 	if (points.empty())
 	{

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: MIT
+// Draws each contestant's visibility on each scene, compares it with rays, and times all in turns. Query: rounds=N (timing, default 5,
+// 0 for none), size=WxH, fit=NAME to search a rival's radius and falloff instead.
+import * as THREE from 'three';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { EffectComposer } from 'three/addons/postprocessing/EffectComposer.js';
+import { GTAOPass } from 'three/addons/postprocessing/GTAOPass.js';
+import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
+import { RenderPass } from 'three/addons/postprocessing/RenderPass.js';
+import { SAOPass } from 'three/addons/postprocessing/SAOPass.js';
+import { N8AOPass } from 'n8ao';
+import { NookPass } from 'nook-ao';
+
+const query = new URLSearchParams(location.search);
+const width = 1280, height = 720;
+const state = document.querySelector('#state');
+const renderer = new THREE.WebGLRenderer();
+renderer.setSize(width, height);
+
+// The first strip picture of a TIFF of 32-bit floats.
+async function floatsOf(address) {
+	const bytes = await (await fetch(address)).arrayBuffer();
+	const view = new DataView(bytes);
+	const small = view.getUint16(0) === 0x4949;
+	const list = view.getUint32(4, small);
+	const tags = new Map();
+	for (let i = 0; i < view.getUint16(list, small); ++i) {
+		const at = list + 2 + 12 * i, kind = view.getUint16(at + 2, small), count = view.getUint32(at + 4, small), size = kind === 3 ? 2 : 4;
+		const from = count * size > 4 ? view.getUint32(at + 8, small) : at + 8;
+		tags.set(view.getUint16(at, small), Array.from({ length: count }, (_, k) => size === 2 ? view.getUint16(from + 2 * k, small) : view.getUint32(from + 4 * k, small)));
+	}
+	const strips = tags.get(273), counts = tags.get(279);
+	const all = new Uint8Array(counts.reduce((sum, one) => sum + one, 0));
+	let at = 0;
+	strips.forEach((strip, i) => {
+		all.set(new Uint8Array(bytes, strip, counts[i]), at);
+		at += counts[i];
+	});
+	return new Float32Array(all.buffer);
+}
+
+async function loaded({ name, file, radius }) {
+	const [level, summary, rays, depths] = await Promise.all([new GLTFLoader().loadAsync(`made/${file}`), fetch(`made/${name}.json`).then(one => one.json()),
+		floatsOf(`made/${name}_ref.tif`), floatsOf(`made/${name}_z.tif`)]);
+	level.scene.traverse(node => {
+		if (!node.isMesh) return;
+		const { map, alphaTest, side } = node.material;
+		node.material = new THREE.MeshLambertMaterial({ map: alphaTest > 0 ? map : null, alphaTest, side });
+	});
+	const scene = new THREE.Scene().add(level.scene, new THREE.HemisphereLight(0xffffff, 0x888888, 3));
+	scene.background = new THREE.Color(0x9db8d8);
+	const matrix = which => summary.matrices.find(one => one.name === which).values;
+	const fov = 2 * Math.atan(1 / matrix('projection64')[5]) * 180 / Math.PI;
+	const camera = new THREE.PerspectiveCamera(fov, width / height, 0.1, 200);
+	new THREE.Matrix4().fromArray(matrix('worldToCamera64')).invert().decompose(camera.position, camera.quaternion, camera.scale);
+	camera.updateMatrixWorld();
+	return { name, radius, scene, camera, rays, depths, counted: null };
+}
+
+// ---- Contestants: settings(radius) of the best fit to rays; make() returns passes and how to show only the visibility.
+const n8 = (quality, half = false) => ({
+	make({ scene, camera, radius }, { r = 2, falloff = 1, k = 2 } = {}) {
+		const pass = new N8AOPass(scene, camera, width, height);
+		pass.setQualityMode(quality);
+		Object.assign(pass.configuration, { aoRadius: r * radius, distanceFalloff: falloff, intensity: k, halfRes: half, gammaCorrection: false, renderMode: 0 });
+		return { passes: [pass], only: () => { pass.configuration.renderMode = 1; } };
+	},
+	axes: { r: [0.7, 1, 1.4, 2, 2.8], falloff: [0.25, 0.5, 1, 2, 4] },
+	curve: (v, k) => v ** k,
+});
+const gtao = (samples, denoise) => ({
+	make({ scene, camera, radius }, { r = 1, thickness = 1, exponent = 1, k = 1 } = {}) {
+		const pass = new GTAOPass(scene, camera, width, height, undefined, { radius: r * radius, thickness: thickness * radius, distanceExponent: exponent, scale: k, samples },
+			{ samples: denoise, rings: 2, radius: 8 });
+		return { passes: [new RenderPass(scene, camera), pass], only: () => { pass.output = GTAOPass.OUTPUT.Denoise; } };
+	},
+	axes: { r: [0.5, 0.7, 1, 1.4], thickness: [0.25, 0.5, 1, 2], exponent: [1, 1.5, 2] },
+	curve: (v, k) => v ** k,
+});
+const sao = () => ({
+	make({ scene, camera, radius }, { kernel = 100, scale = 1, bias = 0.5, k = 0.18 } = {}) {
+		const pass = new SAOPass(scene, camera, new THREE.Vector2(width, height));
+		Object.assign(pass.params, { saoKernelRadius: kernel, saoScale: scale * camera.far / radius, saoBias: bias, saoIntensity: k });
+		return { passes: [new RenderPass(scene, camera), pass], only: () => { pass.params.output = SAOPass.OUTPUT.SAO; } };
+	},
+	axes: { kernel: [30, 60, 100, 160], scale: [0.1, 0.3, 1, 3], bias: [0, 0.1, 0.5] },
+	curve: (v, k) => Math.max(0, 1 - k * (1 - v)),
+});
+const nook = (options) => ({
+	make({ scene, camera, radius }) {
+		const pass = new NookPass(scene, camera, width, height, { radius, ...options });
+		return { passes: [pass], only: () => { pass.view = 'visibility'; } };
+	},
+});
+export const contestants = {
+	'NookPass low, half': nook({ quality: 'low', halfResolution: true }),
+	'NookPass medium, half': nook({ quality: 'medium', halfResolution: true }),
+	'NookPass high, half': nook({ quality: 'high', halfResolution: true }),
+	'NookPass low': nook({ quality: 'low' }),
+	'NookPass medium': nook({ quality: 'medium' }),
+	'NookPass high': nook({ quality: 'high' }),
+	'n8ao Performance, half': n8('Performance', true),
+	'n8ao Medium, half': n8('Medium', true),
+	'n8ao Performance': n8('Performance'),
+	'n8ao Medium': n8('Medium'),
+	'n8ao High': n8('High'),
+	'n8ao Ultra': n8('Ultra'),
+	'n8ao Neural-Performance': n8('Neural-Performance'),
+	'n8ao Neural-Medium': n8('Neural-Medium'),
+	'n8ao Neural-Medium, half': n8('Neural-Medium', true),
+	'GTAOPass 16': gtao(16, 16),
+	'GTAOPass 8': gtao(8, 8),
+	'SAOPass': sao(),
+};
+
+const half = Float32Array.from({ length: 65536 }, (_, i) => THREE.DataUtils.fromHalfFloat(i));
+
+function composerOf(made) {
+	const composer = new EffectComposer(renderer, new THREE.WebGLRenderTarget(width, height, { type: THREE.HalfFloatType }));
+	composer.renderToScreen = false;
+	for (const pass of made.passes) composer.addPass(pass);
+	return composer;
+}
+
+function free(made, composer) {
+	for (const pass of made.passes) pass.dispose();
+	composer.dispose();
+}
+
+// Visibility that the composer drew last, rows from the top.
+function readBack(composer) {
+	const texels = new Uint16Array(4 * width * height);
+	renderer.readRenderTargetPixels(composer.readBuffer, 0, 0, width, height, texels);
+	const values = new Float32Array(width * height);
+	for (let i = 0; i < values.length; ++i) values[i] = half[texels[4 * ((height - 1 - Math.floor(i / width)) * width + i % width)]];
+	return values;
+}
+
+function drawn(contestant, scene, settings) {
+	const made = contestant.make(scene, settings);
+	made.only();
+	const composer = composerOf(made);
+	composer.render(0);
+	composer.render(0);
+	const values = readBack(composer);
+	free(made, composer);
+	return values;
+}
+
+// Pixels that show the surface that the rays began at: depth within 1 %.
+function agreeing(scene) {
+	const pass = new NookPass(scene.scene, scene.camera, width, height);
+	const composer = composerOf({ passes: [pass] });
+	composer.render(0);
+	const target = new THREE.WebGLRenderTarget(width, height, { type: THREE.FloatType, depthBuffer: false });
+	const quad = new FullScreenQuad(new THREE.ShaderMaterial({ uniforms: { depths: { value: pass._ao.depths } }, vertexShader: 'void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }',
+		fragmentShader: 'uniform highp sampler2D depths; void main() { gl_FragColor = vec4(texelFetch(depths, ivec2(gl_FragCoord.xy), 0).r); }' }));
+	renderer.setRenderTarget(target);
+	quad.render(renderer);
+	const texels = new Float32Array(4 * width * height);
+	renderer.readRenderTargetPixels(target, 0, 0, width, height, texels);
+	let count = 0, surfaces = 0;
+	const counted = new Uint8Array(width * height);
+	for (let i = 0; i < counted.length; ++i) {
+		const z = texels[4 * ((height - 1 - Math.floor(i / width)) * width + i % width)];
+		if (!(scene.depths[i] < 1e10)) continue;
+		++surfaces;
+		if (Math.abs(z - scene.depths[i]) < 0.01 * scene.depths[i]) counted[i] = 1, ++count;
+	}
+	free({ passes: [pass] }, composer);
+	target.dispose();
+	return { counted, share: count / surfaces };
+}
+
+function rmse({ rays, counted }, values, curve = v => v) {
+	let sum = 0, count = 0;
+	for (let i = 0; i < rays.length; ++i) {
+		if (!counted[i]) continue;
+		sum += (curve(values[i]) - rays[i]) ** 2;
+		++count;
+	}
+	return Math.sqrt(sum / count);
+}
+
+const later = () => new Promise(done => setTimeout(done, 0));
+const mean = values => values.reduce((sum, one) => sum + one, 0) / values.length;
+
+// The settings of least mean error over the scenes: one axis after the other, twice; k for each try by golden section.
+export async function fit(name, scenes) {
+	const contestant = contestants[name];
+	const best = { error: Infinity, settings: Object.fromEntries(Object.entries(contestant.axes).map(([axis, values]) => [axis, values[values.length >> 1]])) };
+	const tried = new Map();
+	async function tryOut(settings) {
+		const key = JSON.stringify(settings);
+		if (tried.has(key)) return;
+		const pictures = [];
+		for (const scene of scenes) {
+			pictures.push(drawn(contestant, scene, { ...settings, k: 1 }));
+			await later();
+		}
+		const error = k => mean(scenes.map((scene, i) => rmse(scene, pictures[i], v => contestant.curve(v, k))));
+		let low = -4, high = 3;
+		for (let i = 0; i < 14; ++i) {
+			const a = low + 0.382 * (high - low), b = low + 0.618 * (high - low);
+			if (error(Math.exp(a)) < error(Math.exp(b))) high = b; else low = a;
+		}
+		const k = Math.exp((low + high) / 2);
+		tried.set(key, error(k));
+		if (error(k) < best.error) Object.assign(best, { error: error(k), settings: { ...settings }, k });
+	}
+	for (let round = 0; round < 2; ++round) {
+		for (const [axis, values] of Object.entries(contestant.axes)) {
+			for (const value of values) await tryOut({ ...best.settings, [axis]: value });
+		}
+	}
+	return { name, error: best.error, settings: { ...best.settings, k: best.k } };
+}
+
+// Milliseconds beyond a RenderPass, medians of `rounds` in turns.
+async function timed(scene, settings, rounds, frames = 3) {
+	const runs = Object.entries({ scene: { make: ({ scene, camera }) => ({ passes: [new RenderPass(scene, camera)] }) }, ...contestants }).map(([name, contestant]) => {
+		const made = contestant.make(scene, settings[name]);
+		return { name, made, composer: composerOf(made), times: [] };
+	});
+	const texel = new Uint16Array(4);
+	for (let round = -1; round < rounds; ++round) {
+		for (const run of runs) {
+			const began = performance.now();
+			for (let i = 0; i < frames; ++i) run.composer.render(0);
+			renderer.readRenderTargetPixels(run.composer.readBuffer, 0, 0, 1, 1, texel);
+			if (round >= 0) run.times.push((performance.now() - began) / frames);
+			await later();
+		}
+	}
+	for (const { made, composer } of runs) free(made, composer);
+	const median = values => [...values].sort((a, b) => a - b)[values.length >> 1];
+	const scene_ms = runs[0].times;
+	return Object.fromEntries(runs.map(({ name, times }) => [name, { median: median(times.map((one, i) => one - (name === 'scene' ? 0 : scene_ms[i]))),
+		least: Math.min(...times) - (name === 'scene' ? 0 : Math.min(...scene_ms)) }]));
+}
+
+function picture(values, caption) {
+	const canvas = Object.assign(document.createElement('canvas'), { width, height, className: 'picture' });
+	const context = canvas.getContext('2d');
+	const image = context.createImageData(width, height);
+	values.forEach((value, i) => image.data.set([255 * value, 255 * value, 255 * value, 255], 4 * i));
+	context.putImageData(image, 0, 0);
+	const figure = document.createElement('figure');
+	figure.append(canvas, Object.assign(document.createElement('figcaption'), { textContent: caption }));
+	return figure;
+}
+
+export const listed = await (await fetch('made/scenes.json')).json();
+export const scenes = [];
+for (const one of listed) {
+	const scene = await loaded(one);
+	Object.assign(scene, agreeing(scene));
+	scenes.push(scene);
+}
+export const settings = await (await fetch('settings.json')).json();
+
+export async function all(rounds, picked = scenes) {
+	const results = [];
+	for (const scene of picked) {
+		state.textContent = `Drawing ${scene.name}…`;
+		await later();
+		const row = { scene: scene.name, radius: scene.radius, share: scene.share, errors: {}, times: {} };
+		const box = Object.assign(document.createElement('div'), { className: 'pictures' });
+		box.append(picture(scene.rays, 'rays'));
+		for (const [name, contestant] of Object.entries(contestants)) {
+			const values = drawn(contestant, scene, settings[name]);
+			row.errors[name] = rmse(scene, values);
+			box.append(picture(values, `${name}: RMSE ${row.errors[name].toFixed(4)}`));
+			await later();
+		}
+		if (rounds > 0) row.times = await timed(scene, settings, rounds);
+		results.push(row);
+		const table = document.createElement('table');
+		table.innerHTML = `<caption>${scene.name}, radius ${scene.radius} m</caption><tr><th>pass<th>RMSE<th>ms, median<th>ms, least</tr>`;
+		for (const name of Object.keys(contestants)) {
+			const cells = [name, row.errors[name].toFixed(4), row.times[name]?.median.toFixed(1) ?? '', row.times[name]?.least.toFixed(1) ?? ''];
+			const line = table.insertRow();
+			for (const cell of cells) line.insertCell().textContent = cell;
+		}
+		document.querySelector('#results').append(Object.assign(document.createElement('h2'), { textContent: scene.name }), table, box);
+	}
+	state.textContent = `${width} x ${height}, ${renderer.getContext().getParameter(renderer.getContext().RENDERER)}`;
+	return results;
+}
+if (query.has('rounds')) await all(+query.get('rounds'));
+document.documentElement.dataset.drawn = 'yes';

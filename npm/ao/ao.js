@@ -57,12 +57,14 @@ export const rows = {
 	sky: { fallback: Infinity, valid: value => value > 0, expected: 'a number above 0 or Infinity' },
 };
 
-/** Throws where a renderer cannot draw the passes. */
-export function checkRenderer(renderer, owner) {
+/** Returns whether a renderer can draw now, which it cannot while its context is lost. Throws where it never can. */
+export function isReady(renderer, owner) {
 	if (renderer.isWebGPURenderer) throw new Error(`${owner}: found a WebGPURenderer, expected a WebGLRenderer`);
 	const gl = renderer.getContext();
-	if (typeof WebGL2RenderingContext === 'undefined' || !(gl instanceof WebGL2RenderingContext)) throw new Error(`${owner}: found no WebGL 2, expected it`);
+	if (gl.isContextLost()) return false;
+	if (!(gl instanceof WebGL2RenderingContext)) throw new Error(`${owner}: found no WebGL 2, expected it`);
 	if (!renderer.extensions.has('EXT_color_buffer_float')) throw new Error(`${owner}: found no EXT_color_buffer_float, expected it to draw linear depth`);
+	return true;
 }
 
 /** Ambient obscurance of a depth texture. */
@@ -111,12 +113,11 @@ export class NookAO {
 	 * normals: a texture of view-space normals, 0.5 + 0.5 n, in place of those computed from depth.
 	 */
 	render(renderer, depthTexture, normals = null) {
-		if (this._disposed) throw new Error('NookAO: found render after dispose');
-		if (this._size.x === 0 || this._size.y === 0 || renderer.getContext().isContextLost()) return false;
+		if (this._disposed) throw new Error('NookAO: found render after dispose, expected a new one');
+		if (this._size.x === 0 || this._size.y === 0 || !isReady(renderer, 'NookAO')) return false;
 		const logarithmic = renderer.capabilities.logarithmicDepthBuffer === true && this.camera.isOrthographicCamera !== true;
 		const reversed = renderer.state.buffers.depth.getReversed?.() === true;
 		if (renderer !== this._renderer) {
-			checkRenderer(renderer, 'NookAO');
 			this._renderer?.domElement.removeEventListener('webglcontextrestored', this._restored);
 			renderer.domElement.addEventListener('webglcontextrestored', this._restored);
 			this._renderer = renderer;

@@ -5,7 +5,7 @@ import {
 	UnsignedByteType, WebGLRenderTarget, ZeroFactor,
 } from 'three';
 import { FullScreenQuad, Pass } from 'three/addons/postprocessing/Pass.js';
-import { checkRenderer, defineOptions, NookAO, oneOf, rows, screenMaterial, targetOf, truth } from './ao.js';
+import { defineOptions, isReady, NookAO, oneOf, rows, screenMaterial, targetOf, truth } from './ao.js';
 
 const isLayers = value => Array.isArray(value) && value.every(layer => Number.isInteger(layer) && layer >= 0 && layer < 32);
 
@@ -155,8 +155,7 @@ export class NookPass extends Pass {
 	render(renderer, writeBuffer, readBuffer) {
 		if (this._disposed) throw new Error('NookPass: found render after dispose, expected a new pass');
 		const { x: width, y: height } = this._ao._size;
-		if (width === 0 || height === 0 || renderer.getContext().isContextLost()) return;
-		checkRenderer(renderer, 'NookPass');
+		if (width === 0 || height === 0 || !isReady(renderer, 'NookPass')) return;
 		const before = owners.get(readBuffer);
 		// A second NookPass multiplies the picture of the first one instead of drawing the scene again.
 		const follows = before && before !== this && before._stamp > this._stamp && before._frame ? before : null;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The pass for the composer of the package `postprocessing`, without depending on it.
-import { checkRenderer, defineOptions, NookAO, rows } from './ao.js';
+import { defineOptions, isReady, NookAO, rows } from './ao.js';
 import { Composite, passRows, Prepass } from './pass.js';
 
 /** Returns the class of a pass to add after a RenderPass. Pass: the class that `postprocessing` exports. */
@@ -39,10 +39,9 @@ export function nookPassFor(Pass) {
 
 		render(renderer, inputBuffer, outputBuffer) {
 			if (this._disposed) throw new Error('NookPass: found render after dispose, expected a new pass');
-			checkRenderer(renderer, 'NookPass');
 			const ao = this._ao, composite = this._composite;
 			const { x: width, y: height } = ao._size;
-			if (width === 0 || height === 0) return;
+			if (width === 0 || height === 0 || !isReady(renderer, 'NookPass')) return;
 			for (const name of Object.keys(rows)) ao[name] = this[name];
 			let normals = null;
 			if (this.normals === 'pass') {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Draws each contestant's visibility on each scene, compares it with rays, and times all in turns. Query: rounds=N (timing, default 5,
-// 0 for none), size=WxH, fit=NAME to search a rival's radius and falloff instead.
+// 0 for none); scale=N, pictures of 1/N the width and height. fit() searches a rival's settings.
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { EffectComposer } from 'three/addons/postprocessing/EffectComposer.js';
@@ -12,12 +12,13 @@ import { N8AOPass } from 'n8ao';
 import { NookPass } from 'nook-ao';
 
 const query = new URLSearchParams(location.search);
-const width = 1280, height = 720;
+const scale = +(query.get('scale') ?? 1);
+const width = 1280 / scale, height = 720 / scale;
 const state = document.querySelector('#state');
 const renderer = new THREE.WebGLRenderer();
 renderer.setSize(width, height);
 
-// The first strip picture of a TIFF of 32-bit floats.
+// A TIFF of 32-bit floats without compression, every `scale`th pixel.
 async function floatsOf(address) {
 	const bytes = await (await fetch(address)).arrayBuffer();
 	const view = new DataView(bytes);
@@ -36,7 +37,8 @@ async function floatsOf(address) {
 		all.set(new Uint8Array(bytes, strip, counts[i]), at);
 		at += counts[i];
 	});
-	return new Float32Array(all.buffer);
+	const values = new Float32Array(all.buffer);
+	return Float32Array.from({ length: width * height }, (_, i) => values[scale * (Math.floor(i / width) * width * scale + i % width)]);
 }
 
 async function loaded({ name, file, radius }) {
@@ -57,39 +59,57 @@ async function loaded({ name, file, radius }) {
 	return { name, radius, scene, camera, rays, depths, counted: null };
 }
 
-// ---- Contestants: settings(radius) of the best fit to rays; make() returns passes and how to show only the visibility.
+// Contestants: make() returns the passes, how to set what was fitted to rays, and how to show only the visibility. axes: the
+// settings to search, lengths in radii; curve: the last setting, k, which is applied to the visibility and needs no drawing.
 const n8 = (quality, half = false) => ({
-	make({ scene, camera, radius }, { r = 2, falloff = 1, k = 2 } = {}) {
+	make({ scene, camera, radius }) {
 		const pass = new N8AOPass(scene, camera, width, height);
 		pass.setQualityMode(quality);
-		Object.assign(pass.configuration, { aoRadius: r * radius, distanceFalloff: falloff, intensity: k, halfRes: half, gammaCorrection: false, renderMode: 0 });
-		return { passes: [pass], only: () => { pass.configuration.renderMode = 1; } };
+		Object.assign(pass.configuration, { halfRes: half, gammaCorrection: false });
+		return {
+			passes: [pass],
+			set: ({ r, falloff, k }) => Object.assign(pass.configuration, { aoRadius: r * radius, distanceFalloff: falloff, intensity: k }),
+			only: () => { pass.configuration.renderMode = 1; },
+		};
 	},
-	axes: { r: [0.7, 1, 1.4, 2, 2.8], falloff: [0.25, 0.5, 1, 2, 4] },
+	axes: { r: [0.7, 1, 1.4, 2, 2.8], falloff: [0.5, 1, 2, 4, 8] },
+	start: { r: 1.4, falloff: 1 },
 	curve: (v, k) => v ** k,
 });
 const gtao = (samples, denoise) => ({
-	make({ scene, camera, radius }, { r = 1, thickness = 1, exponent = 1, k = 1 } = {}) {
-		const pass = new GTAOPass(scene, camera, width, height, undefined, { radius: r * radius, thickness: thickness * radius, distanceExponent: exponent, scale: k, samples },
-			{ samples: denoise, rings: 2, radius: 8 });
-		return { passes: [new RenderPass(scene, camera), pass], only: () => { pass.output = GTAOPass.OUTPUT.Denoise; } };
+	make({ scene, camera, radius }) {
+		const pass = new GTAOPass(scene, camera, width, height, undefined, { samples }, { samples: denoise });
+		return {
+			passes: [new RenderPass(scene, camera), pass],
+			set: ({ r, thickness, exponent, falloff, denoising, k }) => {
+				pass.updateGtaoMaterial({ radius: r * radius, thickness: thickness * radius, distanceExponent: exponent, distanceFallOff: falloff, scale: k });
+				pass.updatePdMaterial({ radius: denoising });
+			},
+			only: () => { pass.output = GTAOPass.OUTPUT.Denoise; },
+		};
 	},
-	axes: { r: [0.5, 0.7, 1, 1.4], thickness: [0.25, 0.5, 1, 2], exponent: [1, 1.5, 2] },
+	axes: { r: [0.35, 0.5, 0.7, 1, 1.4], thickness: [0.25, 0.5, 1, 2, 4], exponent: [1, 1.5, 2], falloff: [0, 0.5, 1], denoising: [4, 8, 12] },
+	start: { r: 1, thickness: 1, exponent: 1, falloff: 1, denoising: 8 },
 	curve: (v, k) => v ** k,
 });
 const sao = () => ({
-	make({ scene, camera, radius }, { kernel = 100, scale = 1, bias = 0.5, k = 0.18 } = {}) {
+	make({ scene, camera, radius }) {
 		const pass = new SAOPass(scene, camera, new THREE.Vector2(width, height));
-		Object.assign(pass.params, { saoKernelRadius: kernel, saoScale: scale * camera.far / radius, saoBias: bias, saoIntensity: k });
-		return { passes: [new RenderPass(scene, camera), pass], only: () => { pass.params.output = SAOPass.OUTPUT.SAO; } };
+		return {
+			passes: [new RenderPass(scene, camera), pass],
+			set: ({ kernel, scale, bias, cutoff, k }) => Object.assign(pass.params,
+				{ saoKernelRadius: kernel, saoScale: scale * camera.far / radius, saoBias: bias, saoBlurDepthCutoff: cutoff, saoIntensity: k }),
+			only: () => { pass.params.output = SAOPass.OUTPUT.SAO; },
+		};
 	},
-	axes: { kernel: [30, 60, 100, 160], scale: [0.1, 0.3, 1, 3], bias: [0, 0.1, 0.5] },
+	axes: { kernel: [15, 30, 60, 100, 160], scale: [0.01, 0.03, 0.1, 0.3, 1, 3], bias: [0, 0.1, 0.5, 1], cutoff: [0.0005, 0.002, 0.01] },
+	start: { kernel: 60, scale: 0.3, bias: 0.1, cutoff: 0.002 },
 	curve: (v, k) => Math.max(0, 1 - k * (1 - v)),
 });
 const nook = (options) => ({
 	make({ scene, camera, radius }) {
 		const pass = new NookPass(scene, camera, width, height, { radius, ...options });
-		return { passes: [pass], only: () => { pass.view = 'visibility'; } };
+		return { passes: [pass], set: () => {}, only: () => { pass.view = 'visibility'; } };
 	},
 });
 export const contestants = {
@@ -137,10 +157,10 @@ function readBack(composer) {
 }
 
 function drawn(contestant, scene, settings) {
-	const made = contestant.make(scene, settings);
+	const made = contestant.make(scene);
+	made.set(settings);
 	made.only();
 	const composer = composerOf(made);
-	composer.render(0);
 	composer.render(0);
 	const values = readBack(composer);
 	free(made, composer);
@@ -172,9 +192,9 @@ function agreeing(scene) {
 	return { counted, share: count / surfaces };
 }
 
-function rmse({ rays, counted }, values, curve = v => v) {
+function rmse({ rays, counted }, values, curve = v => v, step = 1) {
 	let sum = 0, count = 0;
-	for (let i = 0; i < rays.length; ++i) {
+	for (let i = 0; i < rays.length; i += step) {
 		if (!counted[i]) continue;
 		sum += (curve(values[i]) - rays[i]) ** 2;
 		++count;
@@ -186,40 +206,49 @@ const later = () => new Promise(done => setTimeout(done, 0));
 const mean = values => values.reduce((sum, one) => sum + one, 0) / values.length;
 
 // The settings of least mean error over the scenes: one axis after the other, twice; k for each try by golden section.
-export async function fit(name, scenes) {
+export async function fit(name, told = () => {}) {
 	const contestant = contestants[name];
-	const best = { error: Infinity, settings: Object.fromEntries(Object.entries(contestant.axes).map(([axis, values]) => [axis, values[values.length >> 1]])) };
-	const tried = new Map();
+	const best = { error: Infinity, settings: contestant.start };
+	const tried = new Set();
+	const made = scenes.map(scene => contestant.make(scene));
+	for (const one of made) one.only();
+	const composers = made.map(composerOf);
 	async function tryOut(settings) {
 		const key = JSON.stringify(settings);
 		if (tried.has(key)) return;
+		tried.add(key);
 		const pictures = [];
-		for (const scene of scenes) {
-			pictures.push(drawn(contestant, scene, { ...settings, k: 1 }));
+		for (const [i, composer] of composers.entries()) {
+			made[i].set({ ...settings, k: 1 });
+			composer.render(0);
+			pictures.push(readBack(composer));
 			await later();
 		}
-		const error = k => mean(scenes.map((scene, i) => rmse(scene, pictures[i], v => contestant.curve(v, k))));
+		const error = k => mean(scenes.map((scene, i) => rmse(scene, pictures[i], v => contestant.curve(v, k), 7)));
 		let low = -4, high = 3;
 		for (let i = 0; i < 14; ++i) {
 			const a = low + 0.382 * (high - low), b = low + 0.618 * (high - low);
 			if (error(Math.exp(a)) < error(Math.exp(b))) high = b; else low = a;
 		}
-		const k = Math.exp((low + high) / 2);
-		tried.set(key, error(k));
-		if (error(k) < best.error) Object.assign(best, { error: error(k), settings: { ...settings }, k });
+		const k = +Math.exp((low + high) / 2).toPrecision(3);
+		told(`${key} ${error(k)}`);
+		if (error(k) < best.error) Object.assign(best, { error: error(k), settings: { ...settings, k } });
 	}
 	for (let round = 0; round < 2; ++round) {
 		for (const [axis, values] of Object.entries(contestant.axes)) {
-			for (const value of values) await tryOut({ ...best.settings, [axis]: value });
+			const { k, ...around } = best.settings;
+			for (const value of values) await tryOut({ ...around, [axis]: value });
 		}
 	}
-	return { name, error: best.error, settings: { ...best.settings, k: best.k } };
+	made.forEach((one, i) => free(one, composers[i]));
+	return best;
 }
 
 // Milliseconds beyond a RenderPass, medians of `rounds` in turns.
 async function timed(scene, settings, rounds, frames = 3) {
 	const runs = Object.entries({ scene: { make: ({ scene, camera }) => ({ passes: [new RenderPass(scene, camera)] }) }, ...contestants }).map(([name, contestant]) => {
-		const made = contestant.make(scene, settings[name]);
+		const made = contestant.make(scene);
+		made.set?.(settings[name]);
 		return { name, made, composer: composerOf(made), times: [] };
 	});
 	const texel = new Uint16Array(4);

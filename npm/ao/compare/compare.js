@@ -68,12 +68,14 @@ const n8 = (quality, half = false) => ({
 		Object.assign(pass.configuration, { halfRes: half, gammaCorrection: false });
 		return {
 			passes: [pass],
-			set: ({ r, falloff, k }) => Object.assign(pass.configuration, { aoRadius: r * radius, distanceFalloff: falloff, intensity: k }),
+			// The neural denoiser has a radius of its own.
+			set: ({ r, falloff, denoising = pass.configuration.denoiseRadius, k }) =>
+				Object.assign(pass.configuration, { aoRadius: r * radius, distanceFalloff: falloff, denoiseRadius: denoising, intensity: k }),
 			only: () => { pass.configuration.renderMode = 1; },
 		};
 	},
-	axes: { r: [0.7, 1, 1.4, 2, 2.8], falloff: [0.5, 1, 2, 4, 8] },
-	start: { r: 1.4, falloff: 1 },
+	axes: { r: [0.25, 0.35, 0.5, 0.7, 1], falloff: [0.125, 0.25, 0.5, 1, 2], ...(quality.startsWith('Neural') ? {} : { denoising: [3, 6, 12] }) },
+	start: { r: 0.7, falloff: 0.5, ...(quality.startsWith('Neural') ? {} : { denoising: 6 }) },
 	curve: (v, k) => v ** k,
 });
 const gtao = (samples, denoise) => ({

@@ -9,7 +9,7 @@ mkdir -p "$2/made"
 cd "$2"
 shift 2
 [ $# -gt 0 ] || set -- courtyard builtin:courtyard 1.5
-cp "$here"/*.html "$here/compare.js" "$here/settings.json" "$here/../../../examples/web/serve.js" .
+cp "$here"/*.html "$here"/*.js "$here/settings.json" .
 echo '{"private": true, "type": "module"}' >package.json
 list=
 while [ $# -ge 3 ]; do

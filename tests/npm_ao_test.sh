@@ -22,6 +22,8 @@ application "$source/tests/npm_ao" "$folder/nook-ao"
 checks=$((checks + 1))
 [ "$(wc -c <"$tarball")" -le 40000 ] || problem "the package: found $(wc -c <"$tarball") bytes, expected at most 40000"
 checks=$((checks + 1))
+mkdir public && "$nook" bake builtin:cornell --radius 1 --rays 16 -o public/baked.glb >"$folder/log" || problem "nook bake: failed"
+checks=$((checks + 1))
 "$tools/vite" build --outDir "$folder/vite" --logLevel error >"$folder/log" 2>&1 || problem "vite build: $(tail -n 5 "$folder/log")"
 page_said "the page" "$tools/vite" preview --outDir "$folder/vite" --port 0
 # After a lost context three.js deletes objects of the old one, which Chromium reports.
@@ -36,7 +38,7 @@ node - said <<-'JS' >log 2>&1 || problem "the page: $(head -c 600 log)"
 		normals: 0.01, temporal: [1e-6, 0.2], multisampled: 0.06, intensity: 2e-3, tint: 0, product: 1e-3, view: 0, split: [0, 0], afterRender: 0,
 		twice: 1e-3, postprocessing: 0, transparent: 0, over: 1e-3, layers: 0, casting: 0, bakedOnly: 1e-3, resized: 0, changed: 0, restoredContext: 0,
 		tinted: 0 };
-	const rest = { sky: 1, restored: [9, true, 0x8080ff], meshes: 1, nothing: null, memory: 0,
+	const rest = { sky: 1, restored: [9, true, 0x8080ff], meshes: 1, level: true, nothing: null, memory: 0,
 		disposed: 'Error: NookPass: found render after dispose, expected a new pass' };
 	const found = { ...differences }, wrong = [];
 	for (const [name, bound] of Object.entries(bounds)) {

@@ -54,6 +54,7 @@ page_said()
 {
 	name=$1
 	shift
+	: >"$folder/address"
 	"$@" >"$folder/address" 2>&1 &
 	server=$!
 	for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do

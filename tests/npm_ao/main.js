@@ -2,6 +2,7 @@
 // Uses the package as an application would, in every configuration. globalThis.said: pictures for `nook shade`, what the package
 // refuses, and differences between pictures that should agree.
 import * as THREE from 'three';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { EffectComposer } from 'three/addons/postprocessing/EffectComposer.js';
 import { OutputPass } from 'three/addons/postprocessing/OutputPass.js';
 import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
@@ -188,6 +189,10 @@ const baked = drawn({ baked: true }), unshadowed = drawn({ baked: true, view: 'o
 differences.baked = Math.min(...baked.colours) / mean(flat.colours);
 differences.bakedOnly = rmse(baked.colours, base.colours.map((one, i) => Math.min(one, unshadowed.colours[i])));
 ball.material = grey;
+const level = await new GLTFLoader().loadAsync('baked.glb');
+differences.level = useBakedVisibility(level.scene) > 0 && useBakedVisibility(scene) === 1;
+ball.material = grey;
+ball.geometry.deleteAttribute('_visibility');
 
 // ---- Sizes, disposal, lost context.
 {

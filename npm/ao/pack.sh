@@ -3,7 +3,7 @@
 # Usage: pack.sh NOOK FOLDER. Writes the npm package nook-ao to FOLDER, ready for `npm pack`: its sources, and the modules that NOOK
 # emits. Needs Node.js.
 set -eu
-nook=$(realpath "$1")
+nook=$(realpath "$(command -v "$1")")
 here=$(cd "$(dirname "$0")" && pwd)
 mkdir -p "$2"
 cp "$here"/*.js "$here"/*.d.ts "$here/README.md" "$2"

@@ -3,7 +3,7 @@
 # Usage: run.sh NOOK FOLDER [NAME LEVEL RADIUS]... Compares nook-ao, n8ao and the passes of three.js with rays: writes the page and its
 # scenes to FOLDER, by default builtin:courtyard with a radius of 1.5 m, and serves it. ?rounds=5 draws, measures and times all of them.
 set -eu
-nook=$(realpath "$1")
+nook=$(realpath "$(command -v "$1")")
 here=$(cd "$(dirname "$0")" && pwd)
 mkdir -p "$2/made"
 cd "$2"

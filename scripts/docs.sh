@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 command -v mkdocs >/dev/null || { echo "docs.sh: found no mkdocs, expected Debian's package mkdocs (scripts/setup.sh installs it)" >&2; exit 1; }
 rm -rf build/docs build/site
 mkdir -p build/docs
-for page in README.md CONTRIBUTING.md CHANGELOG.md docs patterns/README.md npm/README.md examples/*/README.md; do
+for page in README.md CONTRIBUTING.md CHANGELOG.md docs patterns/README.md npm/README.md npm/ao/README.md examples/*/README.md; do
 	mkdir -p "build/docs/$(dirname "$page")"
 	cp -R "$page" "build/docs/$page"
 done

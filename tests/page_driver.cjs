@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // node page_driver.cjs BROWSER PAGE [--width W] [--dark] [--reduced] [--before SCRIPT] [--option BROWSER_OPTION]
-// 	[--screenshot FILE.png [--top PIXELS] [--tall PIXELS]] <SCRIPT
+// 	[--screenshot FILE.png [--top PIXELS] [--tall PIXELS]] [--wait SECONDS] <SCRIPT
 // Opens a page, a file or an address of http, in a headless Chromium, runs SCRIPT in it as the body of an async function, and prints what it returns as JSON.
 // Exit code 1 where the page's console has an error or a warning, or the script throws; each is a line on stderr.
 'use strict';
@@ -10,7 +10,7 @@ const { tmpdir } = require('node:os');
 const { join, resolve } = require('node:path');
 
 const [browser, page, ...words] = process.argv.slice(2);
-const options = { width: '1400', height: '1000', option: [] };
+const options = { width: '1400', height: '1000', wait: '120', option: [] };
 for (let i = 0; i < words.length; ++i) {
 	const name = words[i].slice(2);
 	if (name === 'dark' || name === 'reduced') options[name] = true;
@@ -93,7 +93,7 @@ function end(fault) {
 	ask('Browser.close').catch(() => {});
 	setTimeout(() => child.kill('SIGKILL'), 5000).unref();
 }
-const late = setTimeout(() => end('the page: found no answer in 120 s'), 120000);
+const late = setTimeout(() => end(`the page: found no answer in ${options.wait} s`), 1000 * options.wait);
 gone.then(() => end('the browser: found it ended, expected an answer'));
 run(readFileSync(0, 'utf8')).then(value => {
 	console.log(JSON.stringify(value ?? null));

@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: MIT
+export { NookAO } from './ao.js';
+export { NookPass } from './pass.js';
+export { useBakedVisibility } from './baked.js';

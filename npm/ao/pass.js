@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: MIT
+// The pass for the EffectComposer of three.js.
+import {
+	AddEquation, Color, CustomBlending, DepthTexture, FloatType, HalfFloatType, MeshBasicMaterial, MeshNormalMaterial, OneFactor, RedFormat, SrcColorFactor,
+	UnsignedByteType, WebGLRenderTarget, ZeroFactor,
+} from 'three';
+import { FullScreenQuad, Pass } from 'three/addons/postprocessing/Pass.js';
+import { defineOptions, isReady, NookAO, oneOf, rows, screenMaterial, targetOf, truth } from './ao.js';
+
+const isLayers = value => Array.isArray(value) && value.every(layer => Number.isInteger(layer) && layer >= 0 && layer < 32);
+
+/** Options beside those of NookAO. */
+export const passRows = {
+	...rows,
+	view: { ...oneOf('combined', 'off', 'split', 'visibility', 'normals', 'depth') },
+	tint: { fallback: 0x000000, valid: value => value !== undefined && value !== null, expected: 'a colour', stored: value => new Color(value) },
+	normals: oneOf('depth', 'pass'),
+	baked: truth(false),
+};
+const sceneRows = {
+	...passRows,
+	renderScene: truth(true),
+	samples: { fallback: 0, valid: value => Number.isInteger(value) && value >= 0 && value <= 16, expected: 'a whole number from 0 to 16' },
+	excludeTransparent: truth(true),
+	excludeLayers: { fallback: [], valid: isLayers, expected: 'an array of layers, 0 to 31' },
+};
+
+const blend = {
+	blending: CustomBlending, blendEquation: AddEquation, blendSrc: ZeroFactor, blendDst: SrcColorFactor, blendSrcAlpha: ZeroFactor, blendDstAlpha: OneFactor,
+};
+const views = ['combined', 'off', 'split', 'visibility', 'normals', 'depth'];
+
+/** Draws colours × visibility, or one of the views. Shared by the passes of all composers. */
+export class Composite {
+	constructor() {
+		const body = `uniform sampler2D colours, visibilities, depths, normals;
+uniform vec3 tint;
+uniform int view;
+uniform bool baked;
+uniform float width, range;
+out vec4 result;
+// With baked visibility in the colours' alpha, the lower visibility of both decides.
+vec3 factorOf(ivec2 pixel, float alpha) {
+	float open = texelFetch(visibilities, pixel, 0).r;
+	if (baked) open = min(1.0, open / max(alpha, 1e-3));
+	return mix(tint, vec3(1.0), open);
+}`;
+		const uniforms = { colours: null, visibilities: null, depths: null, normals: null, tint: new Color(), view: 0, baked: false, width: 1, range: 1 };
+		this.whole = screenMaterial(`${body}
+void main() {
+	ivec2 pixel = ivec2(gl_FragCoord.xy);
+	vec4 colour = texelFetch(colours, pixel, 0);
+	vec3 factor = factorOf(pixel, colour.a);
+	if (view == 1 || (view == 2 && gl_FragCoord.x < 0.5 * width)) factor = vec3(1.0);
+	result = vec4(colour.rgb * factor, baked ? 1.0 : colour.a);
+	if (view == 3) result = vec4(vec3(texelFetch(visibilities, pixel, 0).r), 1.0);
+	if (view == 4) result = vec4(texelFetch(normals, pixel, 0).rgb, 1.0);
+	if (view == 5) result = vec4(vec3(min(texelFetch(depths, pixel, 0).r / range, 1.0)), 1.0);
+}`, uniforms);
+		this.factor = screenMaterial(`${body}\nuniform sampler2D alphas;\nvoid main() { ivec2 pixel = ivec2(gl_FragCoord.xy);
+	result = vec4(factorOf(pixel, baked ? texelFetch(alphas, pixel, 0).r : 1.0), 1.0); }`, { ...uniforms, alphas: null }, blend);
+		this.copy = screenMaterial('uniform sampler2D colours;\nout vec4 result;\nvoid main() { result = texelFetch(colours, ivec2(gl_FragCoord.xy), 0); }',
+			{ colours: null });
+		this.alpha = screenMaterial('uniform sampler2D colours;\nout float result;\nvoid main() { result = texelFetch(colours, ivec2(gl_FragCoord.xy), 0).a; }',
+			{ colours: null });
+		this.quad = new FullScreenQuad();
+	}
+
+	draw(renderer, material, target, values) {
+		for (const [name, value] of Object.entries(values)) {
+			if (material.uniforms[name]) material.uniforms[name].value = value;
+		}
+		const { autoClear } = renderer;
+		renderer.autoClear = false;
+		renderer.setRenderTarget(target);
+		this.quad.material = material;
+		this.quad.render(renderer);
+		renderer.autoClear = autoClear;
+	}
+
+	/** Values for draw() from the options of a pass. */
+	static valuesOf(pass, ao, colours, normals) {
+		return {
+			colours, visibilities: ao.texture, depths: ao.depths, normals: normals ?? ao.normals, tint: pass.tint, view: views.indexOf(pass.view), baked: pass.baked,
+			width: ao._size.x, range: 20 * pass.radius,
+		};
+	}
+
+	dispose() {
+		for (const one of [this.whole, this.factor, this.copy, this.alpha, this.quad]) one.dispose();
+	}
+}
+
+/** Draws the scene's depth, and its normals with MeshNormalMaterial, where no texture has them. */
+export class Prepass {
+	constructor() {
+		this.material = new MeshNormalMaterial();
+		this.target = targetOf(UnsignedByteType);
+		this.target.depthBuffer = true;
+		this.target.depthTexture = new DepthTexture(1, 1, FloatType);
+	}
+
+	render(renderer, scene, camera, width, height) {
+		const kept = [scene.overrideMaterial, scene.background, renderer.autoClear, renderer.shadowMap.autoUpdate];
+		this.target.setSize(width, height);
+		scene.overrideMaterial = this.material;
+		scene.background = null;
+		renderer.autoClear = true;
+		renderer.shadowMap.autoUpdate = false;
+		renderer.setRenderTarget(this.target);
+		renderer.render(scene, camera);
+		[scene.overrideMaterial, scene.background, renderer.autoClear, renderer.shadowMap.autoUpdate] = kept;
+	}
+
+	dispose() {
+		this.target.depthTexture.dispose();
+		this.target.dispose();
+		this.material.dispose();
+	}
+}
+
+const owners = new WeakMap(); // buffers of composers to the pass that last wrote them
+let clock = 0;
+
+/** Draws a scene with ambient obscurance, in place of a RenderPass; with renderScene: false after one. */
+export class NookPass extends Pass {
+	constructor(scene, camera, width = 512, height = 512, options = {}) {
+		super();
+		defineOptions(this, 'NookPass', sceneRows, options);
+		this.scene = scene;
+		this.camera = camera;
+		this._ao = new NookAO(camera, width, height);
+		this._composite = new Composite();
+		this._prepass = null;
+		this._frame = null;
+		this._alphas = null;
+		this._stamp = 0;
+		this._disposed = false;
+	}
+
+	/** The visibility of the last frame, 1 where open, in the first channel; null before the first. */
+	get texture() {
+		return this._ao.texture;
+	}
+
+	setSize(width, height) {
+		this._ao.setSize(width, height);
+	}
+
+	/** Forgets earlier frames of temporal: true. Call it after a cut of the camera. */
+	reset() {
+		this._ao.reset();
+	}
+
+	render(renderer, writeBuffer, readBuffer) {
+		if (this._disposed) throw new Error('NookPass: found render after dispose, expected a new pass');
+		const { x: width, y: height } = this._ao._size;
+		if (width === 0 || height === 0 || !isReady(renderer, 'NookPass')) return;
+		const before = owners.get(readBuffer);
+		// A second NookPass multiplies the picture of the first one instead of drawing the scene again.
+		const follows = before && before !== this && before._stamp > this._stamp && before._frame ? before : null;
+		this._stamp = ++clock;
+		const target = this.renderToScreen ? null : writeBuffer;
+		if (target) owners.set(target, this);
+		if (this.renderScene && !follows) {
+			this._drawScene(renderer, target, width, height);
+		} else {
+			const depths = follows?._frame.depthTexture ?? readBuffer.depthTexture;
+			if (!depths || this.normals === 'pass') this._draw(renderer, width, height);
+			if (this._obscure(renderer, depths ?? this._prepass.target.depthTexture)) this._show(renderer, readBuffer.texture, target);
+		}
+		renderer.setRenderTarget(target);
+	}
+
+	dispose() {
+		if (this._disposed) return;
+		this._disposed = true;
+		this._ao.dispose();
+		this._composite.dispose();
+		this._prepass?.dispose();
+		this._alphas?.dispose();
+		this._dropFrame();
+	}
+
+	_dropFrame() {
+		this._frame?.depthTexture.dispose();
+		this._frame?.dispose();
+		this._frame = null;
+	}
+
+	_draw(renderer, width, height) {
+		this._prepass ??= new Prepass();
+		this._prepass.render(renderer, this.scene, this.camera, width, height);
+	}
+
+	_obscure(renderer, depths) {
+		const ao = this._ao;
+		for (const name of Object.keys(rows)) ao[name] = this[name];
+		ao.camera = this.camera;
+		return ao.render(renderer, depths, this.normals === 'pass' ? this._prepass.target.texture : null);
+	}
+
+	_show(renderer, colours, target) {
+		const composite = this._composite;
+		const normals = this.normals === 'pass' ? this._prepass.target.texture : null;
+		composite.draw(renderer, composite.whole, target, Composite.valuesOf(this, this._ao, colours, normals));
+	}
+
+	_drawScene(renderer, target, width, height) {
+		if (this._frame && this._frame.samples !== this.samples) this._dropFrame();
+		this._frame ??= new WebGLRenderTarget(width, height, {
+			type: HalfFloatType, samples: this.samples, depthTexture: new DepthTexture(width, height, FloatType),
+		});
+		const frame = this._frame;
+		frame.setSize(width, height);
+		const { scene, camera } = this;
+		const excluded = this._excluded();
+		const kept = [renderer.autoClear, scene.background, renderer.shadowMap.autoUpdate];
+		const ghosts = hide(excluded);
+		renderer.autoClear = true;
+		renderer.setRenderTarget(frame);
+		renderer.render(scene, camera);
+		if (this.normals === 'pass') this._draw(renderer, width, height);
+		show(ghosts);
+		this._obscure(renderer, frame.depthTexture);
+		if (excluded.length === 0 || !['combined', 'off'].includes(this.view)) {
+			this._show(renderer, frame.texture, target);
+		} else {
+			this._drawExcluded(renderer, frame, excluded);
+			this._composite.draw(renderer, this._composite.copy, target, { colours: frame.texture });
+		}
+		[renderer.autoClear, scene.background, renderer.shadowMap.autoUpdate] = kept;
+	}
+
+	// Multiplies the frame by visibility, and draws the excluded objects over it.
+	_drawExcluded(renderer, frame, excluded) {
+		const { scene, camera, _composite: composite } = this;
+		if (this.baked) {
+			this._alphas ??= targetOf(UnsignedByteType, RedFormat);
+			this._alphas.setSize(frame.width, frame.height);
+			composite.draw(renderer, composite.alpha, this._alphas, { colours: frame.texture });
+		}
+		const values = { ...Composite.valuesOf(this, this._ao, null, null), alphas: this._alphas?.texture ?? null };
+		if (this.view === 'combined') composite.draw(renderer, composite.factor, frame, values);
+		const others = [];
+		scene.traverse(object => {
+			if (object.layers.mask !== 0 && (object.isMesh || object.isLine || object.isPoints || object.isSprite) && !excluded.includes(object)) others.push(object);
+		});
+		const ghosts = others.map(object => [object, object.layers.mask, null]);
+		for (const object of others) object.layers.mask = 0;
+		renderer.autoClear = false;
+		renderer.shadowMap.autoUpdate = false;
+		scene.background = null;
+		renderer.setRenderTarget(frame);
+		renderer.render(scene, camera);
+		show(ghosts);
+	}
+
+	_excluded() {
+		let mask = 0;
+		for (const layer of this.excludeLayers) mask |= 1 << layer;
+		const excluded = [];
+		this.scene.traverseVisible(object => {
+			if (!object.material || !object.layers.test(this.camera.layers)) return;
+			const transparent = this.excludeTransparent && [object.material].flat().every(material => material.transparent);
+			if (transparent || (object.layers.mask & mask) !== 0) excluded.push(object);
+		});
+		return excluded;
+	}
+}
+
+const invisible = [0, 1, 2].map(side => new MeshBasicMaterial({ colorWrite: false, depthWrite: false, side }));
+
+// Hides objects from the next drawing without hiding their children. Those that cast a shadow stay, with a material that draws
+// nothing, so that the shadow stays as well. Returns what show() needs to undo it.
+function hide(objects) {
+	return objects.map(object => {
+		const hidden = [object, object.layers.mask, object.material];
+		if (object.castShadow && object.isMesh) object.material = invisible[[object.material].flat()[0].side];
+		else object.layers.mask = 0;
+		return hidden;
+	});
+}
+
+function show(hidden) {
+	for (const [object, mask, material] of hidden) {
+		object.layers.mask = mask;
+		if (material) object.material = material;
+	}
+}

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Uses the package as an application would, in every configuration. globalThis.said: pictures for `nook shade`, what the package
+// refuses, and differences between pictures that should agree.
+import * as THREE from 'three';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { EffectComposer } from 'three/addons/postprocessing/EffectComposer.js';
+import { OutputPass } from 'three/addons/postprocessing/OutputPass.js';
+import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
+import { RenderPass } from 'three/addons/postprocessing/RenderPass.js';
+import * as POST from 'postprocessing';
+import { NookAO, NookPass, useBakedVisibility } from 'nook-ao';
+import { nookPassFor } from 'nook-ao/postprocessing';
+
+const width = 192, height = 108;
+const rendererOf = options => {
+	const renderer = new THREE.WebGLRenderer(options);
+	renderer.setSize(width, height);
+	return renderer;
+};
+const renderer = rendererOf();
+document.body.append(renderer.domElement);
+
+// A floor, a wall and things on it, below sky.
+const scene = new THREE.Scene().add(new THREE.HemisphereLight(0xffffff, 0xffffff, Math.PI));
+scene.background = new THREE.Color(0x8080ff);
+const grey = new THREE.MeshLambertMaterial({ color: 0xffffff });
+const box = (x, y, z, dx, dy, dz, material = grey) => {
+	const mesh = new THREE.Mesh(new THREE.BoxGeometry(dx, dy, dz), material);
+	mesh.position.set(x, y, z);
+	scene.add(mesh);
+	return mesh;
+};
+box(0, -0.5, 0, 12, 1, 12);
+box(0, 1, -3, 8, 2, 0.5);
+box(-1.5, 0.4, -1, 0.8, 0.8, 0.8).rotation.y = 0.5;
+box(1.2, 0.25, 0, 1.5, 0.5, 0.5).rotation.y = -0.3;
+box(1.2, 0.9, -1.8, 0.3, 1.8, 0.3);
+const ball = new THREE.Mesh(new THREE.SphereGeometry(0.5, 32, 16), grey);
+ball.position.set(0, 0.5, -0.8);
+scene.add(ball);
+const cameraOf = camera => {
+	camera.position.set(0.6, 2, 4);
+	camera.lookAt(0, 0.5, -1);
+	camera.updateMatrixWorld();
+	return camera;
+};
+const camera = cameraOf(new THREE.PerspectiveCamera(50, width / height, 0.1, 100));
+
+// The first channel of a texture, rows from the top.
+function read(texture, renderer, channel = 0) {
+	const { width, height } = texture.image;
+	const material = new THREE.RawShaderMaterial({
+		glslVersion: THREE.GLSL3, depthTest: false, depthWrite: false, uniforms: { from: { value: texture } },
+		vertexShader: 'in vec3 position;\nvoid main() { gl_Position = vec4(position.xy, 0.5, 1.0); }',
+		fragmentShader: `precision highp float;\nuniform highp sampler2D from;\nout vec4 value;\nvoid main() { value = vec4(texelFetch(from, ivec2(gl_FragCoord.xy), 0)[${channel}]); }`,
+	});
+	const target = new THREE.WebGLRenderTarget(width, height, { type: THREE.FloatType, depthBuffer: false });
+	renderer.setRenderTarget(target);
+	const quad = new FullScreenQuad(material);
+	quad.render(renderer);
+	renderer.setRenderTarget(null);
+	const four = new Float32Array(4 * width * height);
+	renderer.readRenderTargetPixels(target, 0, 0, width, height, four);
+	for (const one of [target, material, quad]) one.dispose();
+	return Float32Array.from({ length: width * height }, (_, i) => four[4 * ((height - 1 - Math.floor(i / width)) * width + i % width)]);
+}
+
+// What a composer of three.js shows: the pass's own picture and, in `colours`, the composer's.
+function drawn(options = {}, { on = renderer, from = camera, frames = 1, before = [], after = [], channel = 0 } = {}) {
+	const pass = new NookPass(scene, from, width, height, options);
+	const composer = new EffectComposer(on, new THREE.WebGLRenderTarget(width, height, { type: THREE.HalfFloatType }));
+	composer.renderToScreen = false;
+	for (const one of [...before, pass, ...after]) composer.addPass(one);
+	for (let i = 0; i < frames; ++i) composer.render(0);
+	const result = { open: read(pass.texture, on), colours: read(composer.readBuffer.texture, on, channel), depths: read(pass._ao.depths, on) };
+	pass.dispose();
+	composer.dispose();
+	return result;
+}
+const rmse = (a, b) => Math.sqrt(a.reduce((sum, one, i) => sum + (one - b[i]) ** 2, 0) / a.length);
+const mean = a => a.reduce((sum, one) => sum + one, 0) / a.length;
+const refusal = call => {
+	try {
+		call();
+		return 'nothing refused';
+	} catch (error) {
+		return `${error.name}: ${error.message}`;
+	}
+};
+const bytes = values => {
+	let text = '';
+	for (const byte of new Uint8Array(values.buffer)) text += String.fromCharCode(byte);
+	return btoa(text);
+};
+
+// Two passes that stay keep their programs, which the others share.
+const keepers = [false, true].map(halfResolution => new NookPass(scene, camera, width, height, { halfResolution }));
+for (const keeper of keepers) {
+	const target = new THREE.WebGLRenderTarget(width, height);
+	keeper.render(renderer, target, target);
+	target.dispose();
+}
+const base = drawn();
+const high = drawn({ quality: 'high' });
+const pictures = [{ words: 'depth', values: bytes(base.depths) }, { words: 'medium', values: bytes(base.open) }, { words: 'high', values: bytes(high.open) }];
+const differences = {};
+const flat = drawn({ view: 'off' });
+
+// ---- Cameras and depth buffers that show the same picture.
+const infinite = cameraOf(new THREE.PerspectiveCamera(50, width / height, 0.1, 100));
+Object.assign(infinite.projectionMatrix.elements, { 10: -1, 14: -0.2 });
+infinite.projectionMatrixInverse.copy(infinite.projectionMatrix).invert();
+differences.infinite = rmse(drawn({}, { from: infinite }).open, base.open);
+for (const name of ['logarithmicDepthBuffer', 'reversedDepthBuffer']) {
+	const other = rendererOf({ [name]: true });
+	differences[name] = other.capabilities[name] ? rmse(drawn({}, { on: other, from: cameraOf(new THREE.PerspectiveCamera(50, width / height, 0.1, 100)) }).open, base.open) : -1;
+	if (name === 'reversedDepthBuffer' && other.capabilities[name]) {
+		differences.reversedHalf = rmse(drawn({ halfResolution: true }, { on: other, from: cameraOf(new THREE.PerspectiveCamera(50, width / height, 0.1, 100)) }).open, base.open);
+	}
+	other.dispose();
+}
+const parallel = () => cameraOf(new THREE.OrthographicCamera(-4, 4, 2.25, -2.25, 0.1, 100));
+const shallow = parallel();
+const deep = parallel();
+deep.far = 1000;
+deep.updateProjectionMatrix();
+const ortho = drawn({}, { from: shallow });
+differences.orthographic = rmse(ortho.open, drawn({}, { from: deep }).open);
+
+// ---- Options.
+const half = drawn({ halfResolution: true });
+differences.half = rmse(half.open, base.open);
+differences.normals = rmse(drawn({ normals: 'pass' }).open, base.open);
+// The next frame changes the mean of many by less than the first two frames differ.
+const [once, next, many, more] = [1, 2, 32, 33].map(frames => drawn({ temporal: true }, { frames }).open);
+differences.temporal = [rmse(once, base.open), rmse(many, more) / rmse(once, next)];
+differences.multisampled = rmse(drawn({ samples: 4 }).colours, base.colours);
+const strong = drawn({ intensity: 2 });
+differences.intensity = rmse(strong.open, base.open.map(one => one ** 2));
+const red = drawn({ tint: 0xff0000 });
+differences.tint = rmse(red.colours, flat.colours);
+differences.tinted = rmse(drawn({ tint: 0xff0000 }, { channel: 1 }).colours, drawn({}, { channel: 1 }).colours);
+differences.product = rmse(base.colours, flat.colours.map((one, i) => one * base.open[i]));
+differences.view = rmse(drawn({ view: 'visibility' }).colours, base.open);
+const split = drawn({ view: 'split' }).colours;
+differences.split = [flat, base].map(({ colours }, side) => Math.max(...split.map((one, i) => (i % width < width / 2) === (side === 0) ? Math.abs(one - colours[i]) : 0)));
+const near = drawn({ sky: 5 });
+differences.sky = Math.min(...near.open.filter((_, i) => base.depths[i] > 5));
+
+// ---- Passes before and after.
+differences.afterRender = rmse(drawn({ renderScene: false }, { before: [new RenderPass(scene, camera)] }).colours, base.colours);
+const second = new NookPass(scene, camera, width, height);
+differences.twice = rmse(drawn({}, { before: [second], frames: 3 }).colours, flat.colours.map((one, i) => one * base.open[i] ** 2));
+second.dispose();
+{
+	const composer = new POST.EffectComposer(renderer, { frameBufferType: THREE.HalfFloatType });
+	composer.setSize(width, height);
+	const pass = new (nookPassFor(POST.Pass))(scene, camera);
+	composer.addPass(new POST.RenderPass(scene, camera));
+	composer.addPass(pass);
+	composer.autoRenderToScreen = false;
+	composer.render(0);
+	differences.postprocessing = rmse(read(pass.texture, renderer), base.open);
+	composer.dispose();
+	pass.dispose();
+}
+
+// ---- Transparent objects and layers are drawn over the obscurance, and do not occlude.
+const glass = box(0, 1, 1, 2, 2, 0.02, new THREE.MeshBasicMaterial({ color: 0xffffff, transparent: true, opacity: 0.5 }));
+const behind = drawn();
+differences.transparent = rmse(behind.open, base.open);
+const inside = i => base.colours[i] !== behind.colours[i];
+differences.over = Math.max(...behind.colours.map((one, i) => inside(i) ? Math.abs(one - (0.5 + 0.5 * base.colours[i])) : 0));
+differences.covered = behind.colours.filter((_, i) => inside(i)).length / behind.colours.length;
+differences.included = rmse(drawn({ excludeTransparent: false }).open, base.open);
+glass.material = grey;
+glass.layers.enable(3);
+differences.layers = rmse(drawn({ excludeLayers: [3] }).open, base.open);
+glass.castShadow = true;
+differences.casting = rmse(drawn({ excludeLayers: [3] }).open, base.open);
+differences.restored = [glass.layers.mask, glass.material === grey, scene.background.getHex()];
+scene.remove(glass);
+
+// ---- Baked visibility: where it is lower than that of the screen, the screen changes nothing.
+const dark = new Float32Array(ball.geometry.attributes.position.count).fill(0.1);
+ball.geometry.setAttribute('_visibility', new THREE.BufferAttribute(dark, 1));
+differences.meshes = useBakedVisibility(scene);
+const baked = drawn({ baked: true }), unshadowed = drawn({ baked: true, view: 'off' });
+differences.baked = Math.min(...baked.colours) / mean(flat.colours);
+differences.bakedOnly = rmse(baked.colours, base.colours.map((one, i) => Math.min(one, unshadowed.colours[i])));
+ball.material = grey;
+const level = await new GLTFLoader().loadAsync('baked.glb');
+differences.level = useBakedVisibility(level.scene) > 0 && useBakedVisibility(scene) === 1;
+ball.material = grey;
+ball.geometry.deleteAttribute('_visibility');
+
+// ---- Sizes, disposal, lost context.
+{
+	const pass = new NookPass(scene, camera, 0, 0);
+	const composer = new EffectComposer(renderer, new THREE.WebGLRenderTarget(width, height, { type: THREE.HalfFloatType }));
+	composer.renderToScreen = false;
+	composer.addPass(pass);
+	composer.addPass(new OutputPass());
+	pass.setSize(0, 0);
+	composer.render(0);
+	differences.nothing = pass.texture;
+	for (let i = 0; i < 6; ++i) {
+		composer.setSize(width - 31 * i, height - 17 * i);
+		composer.render(0);
+	}
+	composer.setSize(width, height);
+	composer.render(0);
+	differences.resized = rmse(read(pass.texture, renderer), base.open);
+	pass.quality = 'high';
+	composer.render(0);
+	differences.changed = rmse(read(pass.texture, renderer), high.open);
+	pass.temporal = true;
+	composer.render(0);
+	const context = renderer.getContext().getExtension('WEBGL_lose_context');
+	const event = name => new Promise(done => renderer.domElement.addEventListener(name, done, { once: true }));
+	const lost = event('webglcontextlost'), restored = event('webglcontextrestored');
+	context.loseContext();
+	await lost;
+	composer.render(0);
+	await new Promise(done => setTimeout(done, 0));
+	context.restoreContext();
+	await restored;
+	pass.temporal = false;
+	composer.render(0);
+	differences.restoredContext = rmse(read(pass.texture, renderer), high.open);
+	pass.dispose();
+	pass.dispose();
+	differences.disposed = refusal(() => pass.render(renderer, composer.writeBuffer, composer.readBuffer));
+	composer.dispose();
+	for (const keeper of keepers) keeper.dispose();
+	differences.memory = renderer.info.memory.textures;
+}
+
+const unlimited = new THREE.PerspectiveCamera(50, 1, 0.1, Infinity);
+const refused = [
+	refusal(() => new NookPass(scene, camera, width, height, { radius: -1 })),
+	refusal(() => new NookPass(scene, camera, width, height, { quality: 'ultra' })),
+	refusal(() => new NookPass(scene, camera, width, height, { radious: 1 })),
+	refusal(() => new NookPass(scene, camera, width, height, { excludeLayers: 3 })),
+	refusal(() => new NookPass(scene, camera, NaN, height)),
+	refusal(() => { new NookPass(scene, camera).intensity = NaN; }),
+	refusal(() => drawn({}, { from: unlimited })),
+	refusal(() => new NookAO(camera, 8, 8).render({ isWebGPURenderer: true, getContext: () => ({ isContextLost: () => false }) }, null)),
+];
+globalThis.said = { width, height, patterns: [], projection: camera.projectionMatrix.elements, pictures, differences, refused, shadowed: mean(base.open) };

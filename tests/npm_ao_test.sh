@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: npm_ao_test.sh PROGRAM SOURCE CACHE. Packs nook-ao, checks its size and its metadata, installs it in an empty project, and
+# draws with Vite's build in headless Chromium: visibility equal to that of nook shade, every option, every kind of camera, both
+# composers, a lost context, and what the package refuses. Exit code 77: no Chromium, Node.js or npm, or no registry.
+set -u
+nook=$(realpath "$1")
+source=$(realpath "$2")
+cache=$(realpath -m "$3")
+here=$(cd "$(dirname "$0")" && pwd)
+. "$here/table.sh"
+. "$here/browser.sh"
+. "$here/npm_tools.sh"
+
+for tool in idiff oiiotool; do
+	command -v "$tool" >/dev/null || skip "found no $tool, expected Debian's package openimageio-tools"
+done
+npm_tools "$source" "$cache"
+checks=$((checks + 1))
+sh "$source/npm/ao/pack.sh" "$nook" "$folder/nook-ao" >"$folder/log" 2>&1 || problem "pack.sh: $(tail -n 5 "$folder/log")"
+linted "$folder/nook-ao" --profile esm-only
+application "$source/tests/npm_ao" "$folder/nook-ao"
+checks=$((checks + 1))
+[ "$(wc -c <"$tarball")" -le 40000 ] || problem "the package: found $(wc -c <"$tarball") bytes, expected at most 40000"
+checks=$((checks + 1))
+mkdir public && "$nook" bake builtin:cornell --radius 1 --rays 16 -o public/baked.glb >"$folder/log" || problem "nook bake: failed"
+checks=$((checks + 1))
+"$tools/vite" build --outDir "$folder/vite" --logLevel error >"$folder/log" 2>&1 || problem "vite build: $(tail -n 5 "$folder/log")"
+page_said "the page" "$tools/vite" preview --outDir "$folder/vite" --port 0
+# After a lost context three.js deletes objects of the old one, which Chromium reports.
+checks=$((checks + 1))
+grep -v 'object does not belong to this context' "$folder/faults" >"$folder/log" && problem "the page: $(head -n 5 "$folder/log")"
+cd "$folder" || exit 1
+node - said <<-'JS' >log 2>&1 || problem "the page: $(head -c 600 log)"
+	const { differences, refused } = JSON.parse(require('node:fs').readFileSync(process.argv[2], 'utf8'));
+	const { deepStrictEqual } = require('node:assert');
+	// The largest difference of each comparison, or its value.
+	const bounds = { infinite: 1e-3, logarithmicDepthBuffer: 2e-3, reversedDepthBuffer: 2e-3, reversedHalf: 0.03, orthographic: 4e-3, half: 0.03,
+		normals: 0.01, temporal: [1e-6, 0.2], multisampled: 0.06, intensity: 2e-3, tint: 0, product: 1e-3, view: 0, split: [0, 0], afterRender: 0,
+		twice: 1e-3, postprocessing: 0, transparent: 0, over: 1e-3, layers: 0, casting: 0, bakedOnly: 1e-3, resized: 0, changed: 0, restoredContext: 0,
+		tinted: 0 };
+	const rest = { sky: 1, restored: [9, true, 0x8080ff], meshes: 1, level: true, nothing: null, memory: 0,
+		disposed: 'Error: NookPass: found render after dispose, expected a new pass' };
+	const found = { ...differences }, wrong = [];
+	for (const [name, bound] of Object.entries(bounds)) {
+		if (![found[name]].flat().every((one, i) => one >= 0 && one <= [bound].flat()[i])) wrong.push(`${name}: found ${found[name]}, expected at most ${bound}`);
+		delete found[name];
+	}
+	if (!(found.included > 0.05)) wrong.push(`included: found ${found.included}, expected a transparent object to occlude`);
+	if (!(found.covered > 0.1)) wrong.push(`covered: found ${found.covered}, expected the transparent object on a tenth of the picture`);
+	if (!(found.baked < 0.2)) wrong.push(`baked: found ${found.baked}, expected the ball to be dark`);
+	for (const name of ['included', 'covered', 'baked']) delete found[name];
+	if (wrong.length > 0) throw new Error(wrong.join('; '));
+	deepStrictEqual(found, rest);
+	deepStrictEqual(refused, [
+		'RangeError: NookPass: radius: found -1, expected a number above 0',
+		"RangeError: NookPass: quality: found 'ultra', expected 'low', 'medium', 'high'",
+		'TypeError: NookPass: found the option radious, expected radius, quality, intensity, halfResolution, temporal, sky, view, tint, normals, baked, ' +
+			'renderScene, samples, excludeTransparent, excludeLayers',
+		'RangeError: NookPass: excludeLayers: found 3, expected an array of layers, 0 to 31',
+		'RangeError: NookAO: found a size of NaN x 108, expected two numbers',
+		'RangeError: NookPass: intensity: found NaN, expected a number above 0',
+		'RangeError: NookAO: camera: projection: found infinity or NaN, expected 16 finite numbers',
+		'Error: NookAO: found a WebGPURenderer, expected a WebGLRenderer',
+	]);
+JS
+
+# The same depths, drawn by nook shade.
+node "$here/live_page_files.cjs" read <said || problem "the page: $(head -c 300 said)"
+projection=$(node -e 'console.log(JSON.parse(require("fs").readFileSync("said", "utf8")).projection.join(" "))')
+oiiotool read/v0.tif --chnames Z -o depth.exr || problem "depth: not read"
+# pictured PICTURE SLICES STEPS PERCENT: at most PERCENT of the pixels differ by more than 1.5/255, since the page's normals have 8 bits.
+pictured()
+{
+	checks=$((checks + 1))
+	"$nook" tile --domain slice --count "$2" --size 4 --filter bilateral:5 --frames 16 --moves -o tile.json >/dev/null || problem "tile: not made"
+	"$nook" shade depth.exr --sky-depth 1e29 --projection "$projection" --world-to-camera identity --normals from-depth --method slices \
+		--pattern tile.json --slice-steps "$3" --filter bilateral --radius 1.5 -o shade.exr >log 2>&1 || problem "nook shade: $(cat log)"
+	idiff -fail 0.0059 -failpercent "$4" "read/$1.tif" shade.exr >difference 2>&1
+	[ $? -lt 2 ] || problem "$1: $(grep -E 'Max|pixels' difference)"
+}
+pictured v1 1 4 0.5
+pictured v2 3 6 0.5
+before=$failures
+pictured v1 1 2 0.5 >missed
+[ $failures -gt $before ] && failures=$before || problem "other steps: found no fault, expected one"
+finish

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Shared by the tests of npm packages. Source after table.sh and browser.sh. Exits with 77 where Chromium, Node.js or npm is missing,
+# or the registry is not available.
+
+skip()
+{
+	echo "skipped: $*" >&2
+	exit 77
+}
+
+# npm_tools SOURCE CACHE: installs tests/npm_bundlers from npm's registry into CACHE, once, links it into $folder, and sets $tools.
+npm_tools()
+{
+	for tool in "$browser" node npm; do
+		command -v "$tool" >/dev/null || skip "found no ${tool:-chromium}, expected Debian's packages chromium, nodejs and npm (scripts/setup.sh)"
+	done
+	mkdir -p "$2" || exit 1
+	if ! cmp -s "$1/tests/npm_bundlers/package-lock.json" "$2/installed"; then
+		cp "$1"/tests/npm_bundlers/package*.json "$2" || exit 1
+		(cd "$2" && timeout 300 npm ci --no-audit --no-fund --ignore-scripts --fetch-retries 1 --fetch-timeout 30000) >"$folder/log" 2>&1 ||
+			skip "npm could not install the packages of tests/npm_bundlers: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
+		cp "$2/package-lock.json" "$2/installed" # only once everything is installed
+	fi
+	ln -s "$2/node_modules" "$folder/node_modules"
+	tools="$2/node_modules/.bin"
+}
+
+# linted PACKAGE OPTIONS…: checks a package with publint and attw, which gets the options, and that publint notices missing types.
+linted()
+{
+	cp -r "$1" "$folder/package"
+	shift
+	for linter in "publint --strict" "attw --pack . $*"; do
+		checks=$((checks + 1))
+		(cd "$folder/package" && "$tools/"$linter) >"$folder/log" 2>&1 || problem "$linter: $(cat "$folder/log")"
+	done
+	checks=$((checks + 1))
+	sed -i 's/index\.d\.ts/none.d.ts/' "$folder/package/package.json"
+	(cd "$folder/package" && "$tools/publint" --strict) >"$folder/log" 2>&1 && problem "publint passed a package without its types"
+}
+
+# application SOURCES PACKAGE: an application in $folder/app with a package installed from its file, $tarball. Goes there.
+application()
+{
+	cp -r "$1" "$folder/app" && cd "$folder/app" || exit 1
+	tarball="$folder/$(cd "$2" && npm pack --silent --pack-destination "$folder")"
+	echo '{"type": "module"}' >package.json
+	npm install --silent --offline --legacy-peer-deps --no-audit --no-fund "$tarball" >"$folder/log" 2>&1 || problem "npm: not installed: $(cat "$folder/log")"
+}
+
+# page_said NAME COMMAND…: starts a server that prints its address, and opens its page. What the page leaves in globalThis.said goes
+# to $folder/said, its faults to $folder/faults.
+page_said()
+{
+	name=$1
+	shift
+	: >"$folder/address"
+	"$@" >"$folder/address" 2>&1 &
+	server=$!
+	for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+		grep -q 'http://' "$folder/address" || sleep 0.5
+	done
+	address=$(sed 's/\x1b\[[0-9;]*m//g' "$folder/address" | grep -o -m 1 'http://[^ ]*')
+	node "$here/page_driver.cjs" "$browser" "$address" >"$folder/said" 2>"$folder/faults" <<-'JS'
+		while (!globalThis.said) await new Promise(later => setTimeout(later, 50));
+		return said;
+	JS
+	kill $server
+	wait $server 2>/dev/null
+}

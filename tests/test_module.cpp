@@ -127,7 +127,7 @@ TEST_CASE("module: every combination compiles, and takes no name but its own", "
 					CHECK((name.starts_with("nook") || name.starts_with("NOOK")));
 				}
 				const bool whole = settings.methods.size() == 1 && variant == 2;
-				settings.main = whole;
+				settings.main = whole ? std::optional(ModuleMain::fragment) : std::nullopt;
 				const std::string shader =
 					whole ? moduleGlsl(settings, contextOf("nook emit")) : foreignShader(target, module, call);
 				writeFile(folder / "m.frag", shader);

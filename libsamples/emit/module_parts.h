@@ -31,7 +31,7 @@ std::vector<std::pair<std::string, std::string>> presetsOf(const ModuleSettings&
 // True if the language's API has NDC z from 0 to 1, the preset for depth buffers.
 inline bool hasUnitClip(const ModuleSettings& settings)
 {
-	return settings.target == GlslTarget::vulkan;
+	return settings.target == GlslTarget::vulkan || settings.target == GlslTarget::hlsl60;
 }
 
 // Features of a method.
@@ -72,6 +72,19 @@ bool hasBentNormals(const ModuleSettings& settings, const ModuleMethod& method);
 std::string membersText(const ModuleSettings& settings);
 std::string typeOf(const ModuleSettings& settings, const BlockMember& member);
 std::string withIntegers(const ModuleSettings& settings, const std::string& functions);
+
+// The main functions of a complete shader: one per pass of the introduction's list.
+struct ModulePass
+{
+	std::string call;   // at the texel `at`
+	std::string type;   // vec4
+	std::string format; // of a storage image: rgba8
+};
+std::vector<ModulePass> mainPasses(const ModuleSettings& settings);
+
+// GLSL declarations and functions in the kernels' subset as HLSL: names of types and functions, words that HLSL reserves, and
+// comparisons of vectors, which return vectors there.
+std::string toHlsl(const std::string& module);
 
 // The file's introduction: its functions and the passes to draw.
 std::string introductionOf(const ModuleSettings& settings);

@@ -19,7 +19,7 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 4> kModuleFormats{".glsl", ".hlsl", ".h", ".js"};
+constexpr std::array<std::string_view, 7> kModuleFormats{".glsl", ".hlsl", ".h", ".js", ".cs", ".py", ".json"};
 constexpr std::array<std::string_view, 2> kModuleNormals{"texture", "from-depth"};
 constexpr std::array<std::string_view, 2> kModuleBlocks{"mixed", "floats"};
 constexpr std::array<std::string_view, 2> kModuleMains{"fragment", "compute"};
@@ -61,7 +61,7 @@ bool hasLanguage(const EmitOptions& options)
 bool isShader(const std::string& path)
 {
 	const std::string_view format = formatOf(path, kModuleFormats);
-	return format != ".h" && format != ".js";
+	return format == ".glsl" || format == ".hlsl" || path == "-";
 }
 
 bool isScript(const std::string& path)
@@ -69,9 +69,10 @@ bool isScript(const std::string& path)
 	return formatOf(path, kModuleFormats) == ".js";
 }
 
-bool isHeader(const std::string& path)
+// Does the file have names of its own in a program?
+bool hasNamespace(const std::string& path)
 {
-	return formatOf(path, kModuleFormats) == ".h";
+	return formatOf(path, kModuleFormats) == ".h" || formatOf(path, kModuleFormats) == ".cs";
 }
 
 bool isModule(const MethodRow& row)
@@ -271,9 +272,9 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	{
 		refuseValue("--namespace", space, "letters, digits and single underscores, a letter first");
 	}
-	if (std::none_of(files.begin(), files.end(), isHeader))
+	if (std::none_of(files.begin(), files.end(), hasNamespace))
 	{
-		refuseGiven(*options.app, {"--namespace"}, "without a .h file, expected -o FILE.h as well");
+		refuseGiven(*options.app, {"--namespace"}, "without a .h or .cs file, expected -o FILE.h as well");
 	}
 	const bool module = std::any_of(files.begin(), files.end(), isShader);
 	const bool glsl = module || (hasLanguage(options) && std::any_of(files.begin(), files.end(), isScript));
@@ -400,7 +401,10 @@ void emitVolumes(const EmitOptions& options, bool mask)
 	{
 		if (!isShader(path) || formatOf(path, kModuleFormats) == ".hlsl")
 		{
-			refuse(path + ": found " + (isScript(path) ? "a script" : "a header") +
+			refuse(path + ": found " +
+				   (isScript(path)                           ? "a script"
+					: formatOf(path, kModuleFormats) == ".h" ? "a header"
+															 : "another file") +
 				   ", expected a .glsl file alone: nook_volumes_draw.h fills the block");
 		}
 		files.add(path, volumesGlsl(text, {command, NOOK_VERSION, {}, {}}));
@@ -461,9 +465,13 @@ void run(EmitOptions& options, VerbProgress&)
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
-		files.add(path, isShader(path)   ? glsl
-						: isScript(path) ? moduleScript(settings, contextOf(!glsl.empty()), glsl)
-										 : moduleHeader(settings, contextOf(false)));
+		const std::string_view format = formatOf(path, kModuleFormats);
+		files.add(path, isShader(path)      ? glsl
+						: isScript(path)    ? moduleScript(settings, contextOf(!glsl.empty()), glsl)
+						: format == ".cs"   ? moduleSharp(settings, contextOf(false))
+						: format == ".py"   ? modulePython(settings, contextOf(false))
+						: format == ".json" ? moduleJson(settings, contextOf(false))
+											: moduleHeader(settings, contextOf(false)));
 	}
 	Facts facts = verbFacts("emit");
 	facts.text("command", emitCommand(options, patterns, hasLanguage(options)));
@@ -476,8 +484,10 @@ void run(EmitOptions& options, VerbProgress&)
 
 Verb addEmitVerb(CLI::App& nook)
 {
-	return addVerb<EmitOptions>(
-		nook, "emit", "Writes methods and their patterns as a GLSL module, a C++ header and a JavaScript module", declare, run);
+	return addVerb<EmitOptions>(nook, "emit",
+								"Writes methods and their patterns as a GLSL or HLSL module, and its uniform block for C++, "
+								"JavaScript, C#, Python or as JSON",
+								declare, run);
 }
 
 } // namespace nook

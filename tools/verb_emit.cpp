@@ -44,13 +44,14 @@ struct EmitOptions
 	}
 };
 
+std::string targetName(GlslTarget target)
+{
+	return std::string(target == GlslTarget::hlsl60 ? hlslTargets().front() : glslTargets()[static_cast<std::size_t>(target)]);
+}
+
 bool isHlsl(const EmitOptions& options)
 {
 	return options.settings.target == GlslTarget::hlsl60;
-}
-std::string languageOption(const EmitOptions& options)
-{
-	return isHlsl(options) ? "--hlsl" : "--glsl";
 }
 bool hasLanguage(const EmitOptions& options)
 {
@@ -221,7 +222,6 @@ std::vector<std::string> inputsOf(const EmitOptions& options, std::vector<std::s
 void checkLanguage(const EmitOptions& options)
 {
 	const ModuleSettings& settings = options.settings;
-	const std::string name = languageOption(options);
 	if (isHlsl(options))
 	{
 		refuseGiven(*options.app, {"--glsl"}, "with --hlsl, expected one language per run");
@@ -232,22 +232,23 @@ void checkLanguage(const EmitOptions& options)
 		const std::string_view format = formatOf(path, kModuleFormats);
 		if (isShader(path) && !hasLanguage(options))
 		{
-			const std::string missing = format == ".hlsl" ? "--hlsl" : "--glsl";
-			refuse(missing + ": missing, expected one for the " + std::string(format == ".hlsl" ? format : ".glsl") + " file");
+			const std::string language = format == ".hlsl" ? "hlsl" : "glsl";
+			refuse("--" + language + ": missing, expected one for the ." + language + " file");
 		}
 		if ((format == ".hlsl" && !isHlsl(options)) || (format == ".glsl" && isHlsl(options)))
 		{
-			refuse(path + ": found with " + name + ", expected -o FILE." + name.substr(2));
+			const std::string language = isHlsl(options) ? "hlsl" : "glsl";
+			refuse(path + ": found with --" + language + ", expected -o FILE." + language);
 		}
 	}
-	const std::string target = name == "--hlsl" ? "60" : std::string(glslTargets()[static_cast<std::size_t>(settings.target)]);
+	const std::string found = ": found --glsl " + targetName(settings.target);
 	if (settings.main == ModuleMain::compute && !hasCompute(settings.target))
 	{
-		refuse("--main compute: found --glsl " + target + ", which has no compute shaders, expected --glsl 430, vulkan or --hlsl");
+		refuse("--main compute" + found + ", which has no compute shaders, expected --glsl 430, vulkan or --hlsl");
 	}
 	if (settings.textures == ModuleTextures::separate && settings.target != GlslTarget::vulkan)
 	{
-		refuse("--textures separate: found --glsl " + target + ", expected --glsl vulkan");
+		refuse("--textures separate" + found + ", expected --glsl vulkan");
 	}
 }
 
@@ -277,7 +278,7 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 		refuseGiven(*options.app, {"--namespace"}, "without a .h or .cs file, expected -o FILE.h as well");
 	}
 	const bool module = std::any_of(files.begin(), files.end(), isShader);
-	const bool glsl = module || (hasLanguage(options) && std::any_of(files.begin(), files.end(), isScript));
+	const bool glsl = module || (options.given("--glsl") && std::any_of(files.begin(), files.end(), isScript));
 	checkLanguage(options);
 	const GivenFeatures given = givenFeatures(*options.app, kInEmit);
 	if (!glsl && !files.empty())
@@ -345,8 +346,7 @@ std::string emitCommand(const EmitOptions& options, const std::vector<std::strin
 	}
 	if (glsl || settings.device_depth)
 	{
-		command += isHlsl(options) ? " --hlsl " + std::string(hlslTargets().front())
-								   : " --glsl " + std::string(glslTargets()[static_cast<std::size_t>(settings.target)]);
+		command += (isHlsl(options) ? " --hlsl " : " --glsl ") + targetName(settings.target);
 	}
 	return command;
 }
@@ -385,7 +385,7 @@ void emitVolumes(const EmitOptions& options, bool mask)
 {
 	checkOutputs(options.outputs, kModuleFormats, {});
 	const GlslTarget target = options.settings.target;
-	const std::string target_name(glslTargets()[static_cast<std::size_t>(target)]);
+	const std::string target_name = targetName(target);
 	if (!options.given("--glsl") || !drawsVolumes(target))
 	{
 		refuse("--glsl: found " + (options.given("--glsl") ? target_name : "none") + ", expected 330 or 430 for " +
@@ -461,13 +461,14 @@ void run(EmitOptions& options, VerbProgress&)
 	{
 		return EmitContext{emitCommand(options, patterns, glsl), NOOK_VERSION, {}, bases};
 	};
-	const std::string glsl = hasLanguage(options) ? moduleGlsl(settings, contextOf(true)) : "";
+	const std::string shader = hasLanguage(options) ? moduleGlsl(settings, contextOf(true)) : "";
+	const std::string embedded = isHlsl(options) ? "" : shader; // in JavaScript
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
 		const std::string_view format = formatOf(path, kModuleFormats);
-		files.add(path, isShader(path)      ? glsl
-						: isScript(path)    ? moduleScript(settings, contextOf(!glsl.empty()), glsl)
+		files.add(path, isShader(path)      ? shader
+						: isScript(path)    ? moduleScript(settings, contextOf(!embedded.empty()), embedded)
 						: format == ".cs"   ? moduleSharp(settings, contextOf(false))
 						: format == ".py"   ? modulePython(settings, contextOf(false))
 						: format == ".json" ? moduleJson(settings, contextOf(false))

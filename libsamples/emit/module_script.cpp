@@ -86,7 +86,7 @@ constexpr std::array kHeadRules{
 	Rule{R"(const char\*)", {"", "string", ""}},
 	Rule{R"(const (?:double|number) \(&(\w+)\)\[16\])", {"$1", "double[] $1", "$1"}},
 	Rule{R"((?:const )?(nook_\w+)& )", {"", "$1 ", ""}},
-	Rule{R"(\b(double|bool|int) (?=\w+(,|\)))", {"", "$&", ""}},
+	Rule{R"(\b(double|bool|int) (?=\w+(,|\))))", {"", "$&", ""}},
 	Rule{R"(^.*?(\w+)\()", {"function $1(", "$&", "def $1("}},
 };
 

@@ -101,7 +101,7 @@ inline ShadeSamples samplesFor(const ModuleSettings& settings)
 	return method.variants.empty() ? ownSamples(settings.shade) : samplesOf(method.method, method.variants, layersOf(method));
 }
 
-inline nook_block blockFor(const GBuffer& gbuffer, const ShadeSettings& shade, int first_row_ndc_y, int frame)
+inline nook_block passBlockFor(const GBuffer& gbuffer, const ShadeSettings& shade, int first_row_ndc_y, int frame)
 {
 	nook_settings settings;
 	settings.width = gbuffer.width_px;

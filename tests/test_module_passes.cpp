@@ -85,7 +85,7 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 	const std::string module = moduleGlsl(settings, contextOf("nook emit"));
 	const ShadeSamples samples = samplesFor(settings);
 	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings.shade, false);
-	const std::vector<float> block = bytesFor(blockFor(gbuffer, settings.shade, first_row_ndc_y, frame), settings.float_block);
+	const std::vector<float> block = bytesFor(passBlockFor(gbuffer, settings.shade, first_row_ndc_y, frame), settings.float_block);
 	std::vector<glm::vec4> four;
 	for (const glm::vec3& normal : gbuffer.normals)
 	{
@@ -352,7 +352,7 @@ TEST_CASE("module: a compute shader's bindings are where its text puts them", "[
 		glGetProgramiv(program, GL_LINK_STATUS, &linked);
 		REQUIRE(linked == GL_TRUE);
 		glUseProgram(program);
-		const std::vector<float> block = bytesFor(blockFor(gbuffer, settings.shade, 1, 0), false);
+		const std::vector<float> block = bytesFor(passBlockFor(gbuffer, settings.shade, 1, 0), false);
 		GLuint buffer = 0;
 		glGenBuffers(1, &buffer);
 		glBindBufferBase(GL_UNIFORM_BUFFER, 0, buffer);

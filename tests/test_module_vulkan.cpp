@@ -379,7 +379,7 @@ std::vector<float> computed(const VulkanDevice& vulkan, const GBuffer& gbuffer, 
 	const std::string module = moduleGlsl(settings, contextOf("nook emit"));
 	const ShadeSamples samples = samplesFor(settings);
 	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings.shade, false);
-	const std::vector<float> numbers = bytesFor(blockFor(gbuffer, settings.shade, 1, 0), settings.float_block);
+	const std::vector<float> numbers = bytesFor(passBlockFor(gbuffer, settings.shade, 1, 0), settings.float_block);
 	const VulkanBuffer block(vulkan, numbers.size() * 4, numbers.data());
 	std::vector<glm::vec4> normals;
 	for (const glm::vec3& normal : gbuffer.normals)

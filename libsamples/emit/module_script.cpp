@@ -532,7 +532,7 @@ def fill(projection, **settings):
 		wanted = type(DEFAULTS[name])
 		if type(value) is not wanted and not (wanted is float and type(value) is int):
 			raise TypeError(f"settings.{name}: found {value!r}, expected {wanted.__name__}")
-	block = SimpleNamespace(**{name: [0] * 4 for name, kind, offset in MEMBERS})
+	block = SimpleNamespace(**{name: [0] * int(kind[-1]) if "vec" in kind else 0 for name, kind, offset in MEMBERS})
 	reason = nook_fill(block, projection, SimpleNamespace(**{**DEFAULTS, **settings}))
 	if reason is not None:
 		raise ValueError(reason)

@@ -292,7 +292,7 @@ public:
 		auto sampler_info = vulkanInfo<VkSamplerCreateInfo>(VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO);
 		sampler_info.maxLod = VK_LOD_CLAMP_NONE;
 		requireVulkan(vkCreateSampler(vulkan.device(), &sampler_info, nullptr, &m_sampler));
-		const std::array<VkDescriptorPoolSize, 5> sizes{
+		const std::array<VkDescriptorPoolSize, 4> sizes{
 			VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2}, VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1},
 			VkDescriptorPoolSize{m_texture, 16}, VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_SAMPLER, 1}};
 		auto pool_info = vulkanInfo<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
@@ -418,7 +418,11 @@ std::vector<float> computed(const VulkanDevice& vulkan, const GBuffer& gbuffer, 
 				std::forward_as_tuple(vulkan, settings, spirvOf(settings, module, number, picture.shape.format, folder)));
 		}
 		VulkanPass one;
-		one.textures = {{1, depths.view}, {2, normal_picture.view}};
+		for (uint32_t binding = 1; binding < kOutBinding; ++binding) // every binding holds something, read or not
+		{
+			one.textures[binding] = depths.view;
+		}
+		one.textures[2] = normal_picture.view;
 		for (const uint32_t binding : {3U, 4U, 5U, 10U, 12U}) // the tile of any method
 		{
 			one.textures[binding] = tile.view;

@@ -67,7 +67,7 @@ ModuleSettings moduleSettings(bool device)
 {
 	ModuleSettings settings;
 	settings.methods = {{ShadeMethod::vo_line, {scatteredPattern(Domain::disk, 9)}}};
-	settings.main = true;
+	settings.main = ModuleMain::fragment;
 	settings.device_depth = device;
 	return settings;
 }

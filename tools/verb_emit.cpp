@@ -19,9 +19,11 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 3> kModuleFormats{".glsl", ".h", ".js"};
+constexpr std::array<std::string_view, 7> kModuleFormats{".glsl", ".hlsl", ".h", ".js", ".cs", ".py", ".json"};
 constexpr std::array<std::string_view, 2> kModuleNormals{"texture", "from-depth"};
 constexpr std::array<std::string_view, 2> kModuleBlocks{"mixed", "floats"};
+constexpr std::array<std::string_view, 2> kModuleMains{"fragment", "compute"};
+constexpr std::array<std::string_view, 3> kModuleTextures{"fixed", "macros", "separate"};
 constexpr std::array<std::string_view, 2> kTilePlaces{"texture", "array"};
 
 struct EmitOptions
@@ -31,6 +33,7 @@ struct EmitOptions
 	std::string patterns;
 	std::string counts;
 	ModuleSettings settings;
+	std::optional<int> hlsl;
 	int directions = 128;
 	std::string recipe = "rays"; // paper, rays or a file
 	Outputs outputs;
@@ -41,10 +44,25 @@ struct EmitOptions
 	}
 };
 
-// Standard output gets the module.
-bool isGlsl(const std::string& path)
+std::string targetName(GlslTarget target)
 {
-	return formatOf(path, kModuleFormats) != ".h" && formatOf(path, kModuleFormats) != ".js";
+	return std::string(target == GlslTarget::hlsl60 ? hlslTargets().front() : glslTargets()[static_cast<std::size_t>(target)]);
+}
+
+bool isHlsl(const EmitOptions& options)
+{
+	return options.settings.target == GlslTarget::hlsl60;
+}
+bool hasLanguage(const EmitOptions& options)
+{
+	return options.given("--glsl") || options.given("--hlsl");
+}
+
+// Standard output gets the module.
+bool isShader(const std::string& path)
+{
+	const std::string_view format = formatOf(path, kModuleFormats);
+	return format == ".glsl" || format == ".hlsl" || path == "-";
 }
 
 bool isScript(const std::string& path)
@@ -52,9 +70,10 @@ bool isScript(const std::string& path)
 	return formatOf(path, kModuleFormats) == ".js";
 }
 
-bool isHeader(const std::string& path)
+// Does the file have names of its own in a program?
+bool hasNamespace(const std::string& path)
 {
-	return formatOf(path, kModuleFormats) == ".h";
+	return formatOf(path, kModuleFormats) == ".h" || formatOf(path, kModuleFormats) == ".cs";
 }
 
 bool isModule(const MethodRow& row)
@@ -104,6 +123,13 @@ void declare(CLI::App& app, EmitOptions& options)
 		  screen},
 		 {"--glsl", takesChoice(glslTargets(), settings.target),
 		  "Language of the .glsl file: OpenGL 3.3, OpenGL 4.3 (explicit bindings), OpenGL ES 3.0, or Vulkan (GLSL 4.50)"},
+		 {"--hlsl", takesChoice(hlslTargets(), options.hlsl),
+		  "Language of the .hlsl file instead: HLSL, shader model 6.0 (Direct3D 12, Unity, Unreal)", screen},
+		 {"--textures", takesChoice(kModuleTextures, settings.textures),
+		  "How a .glsl file reads textures: tiles and packed pictures directly (fixed, default); all of them through macros that "
+		  "you "
+		  "may define first; or that, with textures apart from their sampler (separate, Vulkan)",
+		  screen},
 		 {"--tile", takesChoice(kTilePlaces, settings.tile),
 		  "Where the samples of a tile are: in a texture (default; the header holds its texels), or in the module itself", screen},
 		 {"--depth", takesChoice(kModuleDepths, settings.device_depth),
@@ -122,12 +148,15 @@ void declare(CLI::App& app, EmitOptions& options)
 		 recipeRow(options.recipe, screen)});
 	addOptions(app, featureOptions(
 						kInEmit, [](const FeatureRow&) { return true; }, settings.shade, screen));
-	addOptions(app, {{"--gather", takesFlag(settings.gather),
-					  "nookGather as well: what a renderer reads that shades one of several samples of a pixel (MSAA), from five "
-					  "pixels, without halos",
-					  screen},
-					 {"--main", takesFlag(settings.main), "A whole fragment shader of the one method, instead of a file to include",
-					  screen}});
+	addOptions(app,
+			   {{"--gather", takesFlag(settings.gather),
+				 "nookGather as well: what a renderer reads that shades one of several samples of a pixel (MSAA), from five "
+				 "pixels, without halos",
+				 screen},
+				{"--main", takesChoice(kModuleMains, settings.main),
+				 "A complete shader with the entry point main, instead of a file to include; NOOK_PASS selects the pass of the "
+				 "method or of its filter",
+				 screen}});
 	addOutputs(app, options.outputs, kModuleFormats);
 	options.app = &app;
 }
@@ -189,6 +218,40 @@ std::vector<std::string> inputsOf(const EmitOptions& options, std::vector<std::s
 	return patterns;
 }
 
+// One language per run, since the header's presets depend on it, and only what it can do.
+void checkLanguage(const EmitOptions& options)
+{
+	const ModuleSettings& settings = options.settings;
+	if (isHlsl(options))
+	{
+		refuseGiven(*options.app, {"--glsl"}, "with --hlsl, expected one language per run");
+		refuseGiven(*options.app, {"--textures"}, "with --hlsl, whose textures always are separate and behind macros");
+	}
+	for (const std::string& path : options.outputs.files)
+	{
+		const std::string_view format = formatOf(path, kModuleFormats);
+		if (isShader(path) && !hasLanguage(options))
+		{
+			const std::string language = format == ".hlsl" ? "hlsl" : "glsl";
+			refuse("--" + language + ": missing, expected one for the ." + language + " file");
+		}
+		if ((format == ".hlsl" && !isHlsl(options)) || (format == ".glsl" && isHlsl(options)))
+		{
+			const std::string language = isHlsl(options) ? "hlsl" : "glsl";
+			refuse(path + ": found with --" + language + ", expected -o FILE." + language);
+		}
+	}
+	const std::string found = ": found --glsl " + targetName(settings.target);
+	if (settings.main == ModuleMain::compute && !hasCompute(settings.target))
+	{
+		refuse("--main compute" + found + ", which has no compute shaders, expected --glsl 430, vulkan or --hlsl");
+	}
+	if (settings.textures == ModuleTextures::separate && settings.target != GlslTarget::vulkan)
+	{
+		refuse("--textures separate" + found + ", expected --glsl vulkan");
+	}
+}
+
 // Every option that would change nothing is a mistake.
 void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, const std::vector<std::string>& patterns)
 {
@@ -210,21 +273,18 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	{
 		refuseValue("--namespace", space, "letters, digits and single underscores, a letter first");
 	}
-	if (std::none_of(files.begin(), files.end(), isHeader))
+	if (std::none_of(files.begin(), files.end(), hasNamespace))
 	{
-		refuseGiven(*options.app, {"--namespace"}, "without a .h file, expected -o FILE.h as well");
+		refuseGiven(*options.app, {"--namespace"}, "without a .h or .cs file, expected -o FILE.h as well");
 	}
-	const bool module = std::any_of(files.begin(), files.end(), isGlsl);
+	const bool module = std::any_of(files.begin(), files.end(), isShader);
 	const bool glsl = module || (options.given("--glsl") && std::any_of(files.begin(), files.end(), isScript));
-	if (module && !options.given("--glsl"))
-	{
-		refuse("--glsl: missing, expected one for the .glsl file");
-	}
+	checkLanguage(options);
 	const GivenFeatures given = givenFeatures(*options.app, kInEmit);
 	if (!glsl && !files.empty())
 	{
 		const std::string without = "without a .glsl file, expected -o FILE.glsl as well";
-		refuseGiven(*options.app, {"--glsl", "--depth", "--normals", "--gather", "--main"}, without);
+		refuseGiven(*options.app, {"--glsl", "--hlsl", "--textures", "--depth", "--normals", "--gather", "--main"}, without);
 		for (const FeatureRow* const row : given)
 		{
 			if (!isOfHeader(row))
@@ -238,11 +298,9 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	{
 		refuseSlicesWithTile(given);
 	}
-	const bool passes = options.settings.shade.filter != ShadeFilter::none || options.settings.shade.half_resolution ||
-						hasPasses(rowOf(methods.front()), options.settings.shade);
-	if (passes || options.settings.gather)
+	if (options.settings.gather)
 	{
-		refuseGiven(*options.app, {"--main"}, "with a method or a filter that needs several passes, expected one of one pass");
+		refuseGiven(*options.app, {"--main"}, "with --gather, which is a function for your shaders, expected one of the two");
 	}
 	if (methods.size() > 1)
 	{
@@ -281,11 +339,14 @@ std::string emitCommand(const EmitOptions& options, const std::vector<std::strin
 		command += settings.normals_from_depth ? " --normals from-depth" : "";
 		command += featuresOf(options, false);
 		command += settings.gather ? " --gather" : "";
-		command += settings.main ? " --main" : "";
+		command += settings.main ? " --main " + std::string(kModuleMains[static_cast<std::size_t>(*settings.main)]) : "";
+		command += options.given("--textures")
+					   ? " --textures " + std::string(kModuleTextures[static_cast<std::size_t>(settings.textures)])
+					   : "";
 	}
 	if (glsl || settings.device_depth)
 	{
-		command += " --glsl " + std::string(glslTargets()[static_cast<std::size_t>(settings.target)]);
+		command += (isHlsl(options) ? " --hlsl " : " --glsl ") + targetName(settings.target);
 	}
 	return command;
 }
@@ -324,7 +385,7 @@ void emitVolumes(const EmitOptions& options, bool mask)
 {
 	checkOutputs(options.outputs, kModuleFormats, {});
 	const GlslTarget target = options.settings.target;
-	const std::string target_name(glslTargets()[static_cast<std::size_t>(target)]);
+	const std::string target_name = targetName(target);
 	if (!options.given("--glsl") || !drawsVolumes(target))
 	{
 		refuse("--glsl: found " + (options.given("--glsl") ? target_name : "none") + ", expected 330 or 430 for " +
@@ -338,9 +399,12 @@ void emitVolumes(const EmitOptions& options, bool mask)
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
-		if (!isGlsl(path))
+		if (!isShader(path) || formatOf(path, kModuleFormats) == ".hlsl")
 		{
-			refuse(path + ": found " + (isScript(path) ? "a script" : "a header") +
+			refuse(path + ": found " +
+				   (isScript(path)                           ? "a script"
+					: formatOf(path, kModuleFormats) == ".h" ? "a header"
+															 : "another file") +
 				   ", expected a .glsl file alone: nook_volumes_draw.h fills the block");
 		}
 		files.add(path, volumesGlsl(text, {command, NOOK_VERSION, {}, {}}));
@@ -359,6 +423,7 @@ void run(EmitOptions& options, VerbProgress&)
 		emitVolumes(options, row->masks);
 		return;
 	}
+	options.settings.target = options.hlsl ? GlslTarget::hlsl60 : options.settings.target;
 	const std::vector<ShadeMethod> methods = methodsOf(options.methods);
 	const std::vector<std::string> patterns = partsOf(options.patterns);
 	const std::vector<std::size_t> counts = countsOf(options, patterns.size());
@@ -396,16 +461,21 @@ void run(EmitOptions& options, VerbProgress&)
 	{
 		return EmitContext{emitCommand(options, patterns, glsl), NOOK_VERSION, {}, bases};
 	};
-	const std::string glsl = options.given("--glsl") ? moduleGlsl(settings, contextOf(true)) : "";
+	const std::string shader = hasLanguage(options) ? moduleGlsl(settings, contextOf(true)) : "";
+	const std::string embedded = isHlsl(options) ? "" : shader; // in JavaScript
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
-		files.add(path, isGlsl(path)     ? glsl
-						: isScript(path) ? moduleScript(settings, contextOf(!glsl.empty()), glsl)
-										 : moduleHeader(settings, contextOf(false)));
+		const std::string_view format = formatOf(path, kModuleFormats);
+		files.add(path, isShader(path)      ? shader
+						: isScript(path)    ? moduleScript(settings, contextOf(!embedded.empty()), embedded)
+						: format == ".cs"   ? moduleSharp(settings, contextOf(false))
+						: format == ".py"   ? modulePython(settings, contextOf(false))
+						: format == ".json" ? moduleJson(settings, contextOf(false))
+											: moduleHeader(settings, contextOf(false)));
 	}
 	Facts facts = verbFacts("emit");
-	facts.text("command", emitCommand(options, patterns, options.given("--glsl")));
+	facts.text("command", emitCommand(options, patterns, hasLanguage(options)));
 	facts.items("methods", std::move(items));
 	addSide(files, options.outputs, facts.json(), inputsOf(options, patterns));
 	files.commit();
@@ -415,8 +485,10 @@ void run(EmitOptions& options, VerbProgress&)
 
 Verb addEmitVerb(CLI::App& nook)
 {
-	return addVerb<EmitOptions>(
-		nook, "emit", "Writes methods and their patterns as a GLSL module, a C++ header and a JavaScript module", declare, run);
+	return addVerb<EmitOptions>(nook, "emit",
+								"Writes methods and their patterns as a GLSL or HLSL module, and its uniform block for C++, "
+								"JavaScript, C#, Python or as JSON",
+								declare, run);
 }
 
 } // namespace nook

@@ -19,6 +19,7 @@ namespace
 {
 
 constexpr std::array<std::string_view, 4> kTargets{"330", "430", "es300", "vulkan"};
+constexpr std::array<std::string_view, 1> kHlslTargets{"60"};
 
 constexpr const char* kLinear = "nookLinear"; // converts device depth
 constexpr const char* kNormal = "nookNormal";
@@ -50,30 +51,38 @@ struct PassInput
 {
 	const char* function;
 	const char* head; // function head
+	const char* parameters;
 	const char* sampler;
 	const char* type;
 	const char* binding_macro;
 	int binding;
-	const char* fetch;
+	const char* place;
+	const char* level;
 	const char* meaning;
 };
 constexpr std::array kPassInputs{
-	PassInput{"nookLevel", "vec4 nookLevel(ivec2 texel, int level)", "nook_levels", "sampler2D", "NOOK_LEVELS", 7, "texel, level",
+	PassInput{"nookLevel", "vec4 nookLevel(ivec2 texel, int level)", "texel, level", "nook_levels", "sampler2D", "NOOK_LEVELS", 7,
+			  "texel", "level",
 			  "Picture of an earlier pass, with its mip levels where it has some. While you draw into level l of it, restrict the "
 			  "texture\n"
 			  "// to the levels before l (GL_TEXTURE_MAX_LEVEL, or an image view)."},
 	PassInput{
-		"nookPacked", "vec4 nookPacked(ivec2 cell)", "nook_packed", "sampler2D", "NOOK_PACKED", 11, "cell, 0",
+		"nookPacked", "vec4 nookPacked(ivec2 cell)", "cell", "nook_packed", "sampler2D", "NOOK_PACKED", 11, "cell", "0",
 		"Picture of the pass before: visibility in the first channel, numbers for the filter or for upsampling in the others."},
-	PassInput{"nookTable", "uvec4 nookTable(ivec2 texel, int table)", "nook_tables", "highp usampler2DArray", "NOOK_TABLES", 8,
-			  "ivec3(texel, table), 0", "Summed-area tables: RGBA32UI, one table per layer."},
-	PassInput{"nookRange", "vec4 nookRange(int i)", "nook_range", "sampler2D", "NOOK_RANGE", 9, "ivec2(i, 0), 0",
+	PassInput{"nookTable", "uvec4 nookTable(ivec2 texel, int table)", "texel, table", "nook_tables", "highp usampler2DArray",
+			  "NOOK_TABLES", 8, "ivec3(texel, table)", "0", "Summed-area tables: RGBA32UI, one table per layer."},
+	PassInput{"nookRange", "vec4 nookRange(int i)", "i", "nook_range", "sampler2D", "NOOK_RANGE", 9, "ivec2(i, 0)", "0",
 			  "Picture of nookStatFrame, two texels: the range of the positions in the tables."},
 };
 
+bool isHlsl(const ModuleSettings& settings)
+{
+	return settings.target == GlslTarget::hlsl60;
+}
+
 bool hasBindings(GlslTarget target)
 {
-	return target == GlslTarget::gl430 || target == GlslTarget::vulkan;
+	return target == GlslTarget::gl430 || target == GlslTarget::vulkan || target == GlslTarget::hlsl60;
 }
 
 std::string setOf(GlslTarget target)
@@ -87,11 +96,58 @@ std::string bindingMacro(GlslTarget target, const std::string& name, int number)
 	return hasBindings(target) ? "#ifndef " + name + "\n#define " + name + " " + std::to_string(number) + "\n#endif\n" : "";
 }
 
-std::string samplerText(GlslTarget target, const std::string& macro, const std::string& sampler, int binding)
+// A macro for a resource whose numbers differ between Direct3D, which counts each kind, and HLSL for Vulkan.
+std::string placeMacro(const std::string& name, int number, int vulkan_number)
 {
+	return "#ifndef " + name + "\n#ifdef NOOK_VULKAN\n#define " + name + " " + std::to_string(vulkan_number) + "\n#else\n#define " +
+		   name + " " + std::to_string(number) + "\n#endif\n#endif\n";
+}
+
+// Does the module read tiles and the pictures of its own passes through macros?
+bool hasMacros(const ModuleSettings& settings)
+{
+	return settings.textures != ModuleTextures::fixed || isHlsl(settings);
+}
+
+bool isSeparate(const ModuleSettings& settings)
+{
+	return settings.target == GlslTarget::vulkan && settings.textures == ModuleTextures::separate;
+}
+
+// "sampler2D" as the type of a texture alone: "texture2D", or "Texture2D<vec4>" for toHlsl.
+std::string textureType(const ModuleSettings& settings, std::string type)
+{
+	if (isHlsl(settings))
+	{
+		return type == "sampler2D" ? "Texture2D<vec4>" : "Texture2DArray<uvec4>";
+	}
+	return isSeparate(settings) ? type.replace(type.find("sampler"), 7, "texture") : type;
+}
+
+// Declares a texture. `macro`: the name of its binding macro without _BINDING.
+std::string samplerText(const ModuleSettings& settings, const std::string& macro, const std::string& sampler, int binding,
+						const std::string& type = "sampler2D")
+{
+	const GlslTarget target = settings.target;
 	const std::string number = macro + "_BINDING";
+	if (isHlsl(settings))
+	{
+		return bindingMacro(target, number, binding) + "NOOK_AT(" + number + ") " + textureType(settings, type) + " " + sampler +
+			   " NOOK_REGISTER(t, " + number + ");\n";
+	}
 	const std::string layout = hasBindings(target) ? "layout(" + setOf(target) + "binding = " + number + ") " : "";
-	return bindingMacro(target, number, binding) + layout + "uniform sampler2D " + sampler + ";\n";
+	return bindingMacro(target, number, binding) + layout + "uniform " + textureType(settings, type) + " " + sampler + ";\n";
+}
+
+std::string fetchText(const ModuleSettings& settings, const std::string& sampler, const std::string& place,
+					  const std::string& level = "0", std::string_view type = "sampler2D")
+{
+	if (isHlsl(settings))
+	{
+		return sampler + ".Load(" + (type == "sampler2D" ? "ivec3(" : "ivec4(") + place + ", " + level + "))";
+	}
+	const std::string combined = std::string(type.substr(type.find_last_of(' ') + 1)) + "(" + sampler + ", nook_sampler)";
+	return "texelFetch(" + (isSeparate(settings) ? combined : sampler) + ", " + place + ", " + level + ")";
 }
 
 // Replaces the first input if depth comes as stored in a depth buffer.
@@ -104,15 +160,15 @@ constexpr Input kDeviceDepth{"nookDepth",
 							 1,
 							 "The depth buffer as it is, 0 to 1, of any projection; a pixel at the far plane is sky."};
 
-std::string inputText(GlslTarget target, const Input& input)
+std::string inputText(const ModuleSettings& settings, const Input& input)
 {
 	const std::string macro = input.macro;
 	const std::string value = macro + "(pixel)";
 	const bool device = &input == &kDeviceDepth;
 	return "\n// " + std::string(input.meaning) + "\n// Define " + macro +
 		   "(pixel) before this file to read your own in another way.\n#ifndef " + macro + "\n" +
-		   samplerText(target, input.binding_macro, input.sampler, input.binding) + "#define " + macro + "(pixel) texelFetch(" +
-		   input.sampler + ", pixel, 0)" + input.channels + "\n#endif\n" + input.type + " " + input.function +
+		   samplerText(settings, input.binding_macro, input.sampler, input.binding) + "#define " + macro + "(pixel) " +
+		   fetchText(settings, input.sampler, "pixel") + input.channels + "\n#endif\n" + input.type + " " + input.function +
 		   "(ivec2 pixel)\n{\n\treturn " + (device ? "nookLinear(" + value + ")" : value) + ";\n}\n";
 }
 
@@ -125,13 +181,24 @@ std::string madeNormalText(const Input& input)
 		   "(ivec2 pixel)\n{\n\treturn " + macro + "(pixel);\n}\n";
 }
 
-std::string passInputText(GlslTarget target, const PassInput& input)
+// A function that fetches a texel, through a macro where the module has macros.
+std::string readText(const ModuleSettings& settings, const std::string& declaration, const std::string& head,
+					 const std::string& call, const std::string& fetch)
 {
-	const std::string number = std::string(input.binding_macro) + "_BINDING";
-	const std::string layout = hasBindings(target) ? "layout(" + setOf(target) + "binding = " + number + ") " : "";
-	return "\n// " + std::string(input.meaning) + "\n" + bindingMacro(target, number, input.binding) + layout + "uniform " +
-		   input.type + " " + input.sampler + ";\n" + input.head + "\n{\n\treturn texelFetch(" + input.sampler + ", " +
-		   input.fetch + ");\n}\n";
+	if (!hasMacros(settings))
+	{
+		return declaration + head + "\n{\n\treturn " + fetch + ";\n}\n";
+	}
+	return "// Define " + call + " before this file to read it in another way.\n#ifndef " + call.substr(0, call.find('(')) + "\n" +
+		   declaration + "#define " + call + " " + fetch + "\n#endif\n" + head + "\n{\n\treturn " + call + ";\n}\n";
+}
+
+std::string passInputText(const ModuleSettings& settings, const PassInput& input)
+{
+	const std::string macro = input.binding_macro;
+	return "\n// " + std::string(input.meaning) + "\n" +
+		   readText(settings, samplerText(settings, macro, input.sampler, input.binding, input.type), input.head,
+					macro + "(" + input.parameters + ")", fetchText(settings, input.sampler, input.place, input.level, input.type));
 }
 
 // The uniform for what differs between passes of one function.
@@ -142,6 +209,9 @@ std::string passText(const ModuleSettings& settings)
 	switch (settings.target)
 	{
 	case GlslTarget::vulkan: return text + "layout(push_constant) uniform nook_pass_block\n{\n\t" + member + "\n};\n";
+	case GlslTarget::hlsl60:
+		return text + placeMacro("NOOK_PASS_BINDING", 1, 16) +
+			   "NOOK_AT(NOOK_PASS_BINDING) cbuffer nook_pass_block NOOK_REGISTER(b, NOOK_PASS_BINDING)\n{\n\t" + member + "\n};\n";
 	case GlslTarget::gl430:
 		return text + bindingMacro(settings.target, "NOOK_PASS_LOCATION", 0) + "layout(location = NOOK_PASS_LOCATION) uniform " +
 			   member + "\n";
@@ -154,16 +224,23 @@ std::string passText(const ModuleSettings& settings)
 std::string blockText(const ModuleSettings& settings)
 {
 	const GlslTarget target = settings.target;
+	const std::string text =
+		"\n// The uniform block that nook_fill fills. Lengths are in metres, or in the unit of your depths.\n" +
+		bindingMacro(target, "NOOK_BLOCK_BINDING", 0);
+	if (isHlsl(settings))
+	{
+		return text + "struct nook_block_members\n{\n" + membersText(settings) +
+			   "};\nNOOK_AT(NOOK_BLOCK_BINDING) cbuffer nook_block NOOK_REGISTER(b, NOOK_BLOCK_BINDING)\n{\n"
+			   "\tnook_block_members nook;\n};\n";
+	}
 	const std::string layout =
 		"layout(" + setOf(target) + "std140" + (hasBindings(target) ? ", binding = NOOK_BLOCK_BINDING" : "") + ")";
-	std::string text = "\n// The uniform block that nook_fill fills. Lengths are in metres, or in the unit of your depths.\n" +
-					   bindingMacro(target, "NOOK_BLOCK_BINDING", 0) + layout + " uniform nook_block\n{\n";
-	return text + membersText(settings) + "} nook;\n";
+	return text + layout + " uniform nook_block\n{\n" + membersText(settings) + "} nook;\n";
 }
 
-std::string headOf(GlslTarget target)
+std::string headOf(const ModuleSettings& settings)
 {
-	switch (target)
+	switch (settings.target)
 	{
 	case GlslTarget::gl330: return "#if __VERSION__ < 330\n#error nook: this module needs #version 330 or later\n#endif\n";
 	case GlslTarget::gl430: return "#if __VERSION__ < 430\n#error nook: this module needs #version 430 or later\n#endif\n";
@@ -171,35 +248,48 @@ std::string headOf(GlslTarget target)
 		return "#if !defined(GL_ES) || __VERSION__ < 300\n#error nook: this module needs #version 300 es or later\n#endif\n"
 			   "// Depths need high precision. The rest of your shader gets these defaults too, unless it sets others.\n"
 			   "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n";
+	case GlslTarget::hlsl60:
+		return "#ifndef NOOK_REGISTER // define it first for another space, or as nothing where your engine binds by name\n"
+			   "#define NOOK_REGISTER_OF(kind, number) : register(kind##number)\n"
+			   "#define NOOK_REGISTER(kind, number) NOOK_REGISTER_OF(kind, number)\n#endif\n"
+			   "#ifdef NOOK_VULKAN // define it first for SPIR-V\n"
+			   "#ifndef NOOK_SET\n#define NOOK_SET 0 // descriptor set of every binding of this module\n#endif\n"
+			   "#define NOOK_AT(number) [[vk::binding(number, NOOK_SET)]]\n#else\n#define NOOK_AT(number)\n#endif\n";
 	case GlslTarget::vulkan: break;
 	}
 	return "#if !defined(VULKAN) || __VERSION__ < 450\n#error nook: this module needs #version 450 or later, and Vulkan\n#endif\n"
-		   "#ifndef NOOK_SET\n#define NOOK_SET 0 // descriptor set of every binding of this module\n#endif\n";
+		   "#ifndef NOOK_SET\n#define NOOK_SET 0 // descriptor set of every binding of this module\n#endif\n" +
+		   (isSeparate(settings)
+				? bindingMacro(settings.target, "NOOK_SAMPLER_BINDING", 16) +
+					  "layout(set = NOOK_SET, binding = NOOK_SAMPLER_BINDING) uniform sampler nook_sampler; // any\n"
+				: "");
 }
 
 std::string versionLine(GlslTarget target)
 {
-	constexpr std::array<const char*, 4> lines{"#version 330 core\n", "#version 430 core\n", "#version 300 es\n", "#version 450\n"};
+	constexpr std::array<const char*, 5> lines{"#version 330 core\n", "#version 430 core\n", "#version 300 es\n", "#version 450\n",
+											   ""};
 	return lines[static_cast<std::size_t>(target)];
+}
+
+// An array of constants. `space`: between the elements.
+std::string arrayText(const ModuleSettings& settings, const std::string& type, const std::string& name,
+					  const std::vector<std::string>& elements, const std::string& before, const std::string& space)
+{
+	const std::string size = "[" + std::to_string(elements.size()) + "]";
+	std::string text = (isHlsl(settings) ? "static const " : "const ") + type + " " + name + size + " = " +
+					   (isHlsl(settings) ? "{" : type + size + "(") + before;
+	for (const std::string& element : elements)
+	{
+		text += type + "(" + element + ")" + (&element != &elements.back() ? "," + space : "");
+	}
+	return text + (isHlsl(settings) ? "};\n" : ");\n");
 }
 
 std::string columnsText(const ModuleMethod& method)
 {
 	return rowOf(method.method).third == SampleThird::log2_side ? "x, y, log2 of the side of its area, weight"
 																: columnsOf(method.variants.front().domain);
-}
-
-// Text of a tile's moves per frame.
-std::string movesText(const ModuleMethod& method, const std::string& name)
-{
-	const std::string size = "[" + std::to_string(method.moves.size()) + "]";
-	std::string text = "const ivec2 " + name + size + " = ivec2" + size + "(";
-	for (std::size_t f = 0; f < method.moves.size(); ++f)
-	{
-		text +=
-			(f == 0 ? "ivec2(" : ", ivec2(") + std::to_string(method.moves[f].x) + ", " + std::to_string(method.moves[f].y) + ")";
-	}
-	return text + ");\n";
 }
 
 // Text of a method's samples and how its kernel reads them.
@@ -223,19 +313,19 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 		const std::string sampler = stemOf(row) + "_tile";
 		text += ". A texture RGBA32F, " + std::to_string(method.variants.size()) + " x " + count +
 				", whose texels the header holds;\n// a column is the variant of a pixel, a row is a sample.\n";
-		text += samplerText(settings.target, macroOf(row) + "_TILE", sampler, row.tile_binding);
-		text += "vec4 " + function + "(int row, int i)\n{\n\treturn texelFetch(" + sampler + ", ivec2(row, i), 0);\n}\n";
+		const std::string macro = macroOf(row) + "_TILE";
+		text += readText(settings, samplerText(settings, macro, sampler, row.tile_binding), "vec4 " + function + "(int row, int i)",
+						 macro + "(row, i)", fetchText(settings, sampler, "ivec2(row, i)"));
 	}
 	else
 	{
-		const std::vector<Sample> rows = rowsOf(method);
-		const std::string size = "[" + std::to_string(rows.size()) + "]";
 		text += window > 1 ? "; those of one variant after the other.\n" : ".\n";
-		text += "const vec4 " + name + size + " = vec4" + size + "(\n";
-		for (std::size_t i = 0; i < rows.size(); ++i)
+		std::vector<std::string> rows;
+		for (const Sample& sample : rowsOf(method))
 		{
-			text += "\tvec4(" + rowText(rows[i]) + (i + 1 < rows.size() ? "),\n" : "));\n");
+			rows.push_back(rowText(sample));
 		}
+		text += arrayText(settings, "vec4", name, rows, "\n\t", "\n\t");
 		const std::string at = window > 1 ? "row * " + count + " + i" : "i";
 		text += "vec4 " + function + "(int row, int i)\n{\n\treturn " + name + "[" + at + "];\n}\n";
 	}
@@ -244,7 +334,12 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 	const std::string frame = "int(nook.frame) % " + std::to_string(method.frames);
 	if (!method.moves.empty())
 	{
-		text += movesText(method, stemOf(row) + "_moves");
+		std::vector<std::string> moves;
+		for (const glm::ivec2& move : method.moves)
+		{
+			moves.push_back(std::to_string(move.x) + ", " + std::to_string(move.y));
+		}
+		text += arrayText(settings, "ivec2", stemOf(row) + "_moves", moves, "", " ");
 		variant =
 			"(nookRow(pixel.y)" + cell + " + move.y) % " + side + " * " + side + " + (pixel.x" + cell + " + move.x) % " + side;
 		return text + "int " + entry + "Variant(ivec2 pixel)\n{\n\tivec2 move = " + stemOf(row) + "_moves[" + frame +
@@ -324,14 +419,60 @@ std::string functionsOf(const ModuleSettings& settings, FunctionWriter& writer)
 	return functions;
 }
 
+// The main function of a pass, with its output.
+std::string mainOf(const ModuleSettings& settings, const ModulePass& pass)
+{
+	const bool compute = settings.main == ModuleMain::compute;
+	if (isHlsl(settings))
+	{
+		return compute ? "NOOK_AT(NOOK_OUT_BINDING) RWTexture2D<" + pass.type +
+							 "> nook_out NOOK_REGISTER(u, NOOK_OUT_BINDING); // " + pass.format +
+							 " or better\n\n[numthreads(NOOK_GROUP, NOOK_GROUP, 1)]\nvoid main(uvec3 id : SV_DispatchThreadID)\n{\n"
+							 "\tuvec2 size;\n\tnook_out.GetDimensions(size.x, size.y);\n\tivec2 at = ivec2(id.xy);\n"
+							 "\tif (id.x < size.x && id.y < size.y)\n\t{\n\t\tnook_out[id.xy] = " +
+							 pass.call + ";\n\t}\n}\n"
+					   : pass.type + " main(vec4 place : SV_Position) : SV_Target\n{\n\tivec2 at = ivec2(place.xy);\n\treturn " +
+							 pass.call + ";\n}\n";
+	}
+	if (!compute)
+	{
+		return "layout(location = 0) out " + pass.type + " nook_out; // " + pass.format +
+			   " or better\n\nvoid main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n\tnook_out = " + pass.call + ";\n}\n";
+	}
+	const std::string own = pass.type.front() == 'u' ? "uvec4" : "vec4";
+	const std::string image = pass.type.front() == 'u' ? "uimage2D" : "image2D";
+	return "#ifndef NOOK_OUT_FORMAT\n#define NOOK_OUT_FORMAT " + pass.format + " // or better\n#endif\nlayout(" +
+		   setOf(settings.target) + "binding = NOOK_OUT_BINDING, NOOK_OUT_FORMAT) uniform writeonly " + image +
+		   " nook_out;\n\nvoid main()\n{\n\tivec2 at = ivec2(gl_GlobalInvocationID.xy);\n\tivec2 size = imageSize(nook_out);\n"
+		   "\tif (at.x < size.x && at.y < size.y)\n\t{\n\t\timageStore(nook_out, at, " +
+		   own + "(" + pass.call + "));\n\t}\n}\n";
+}
+
 std::string mainText(const ModuleSettings& settings)
 {
-	assert(settings.methods.size() == 1);
-	const ModuleMethod& method = settings.methods.front();
-	const bool bent = hasBentNormals(settings, method);
-	const std::string name = bent ? "nook_bent_visibility" : "nook_visibility";
-	return "\nlayout(location = 0) out " + std::string(bent ? "vec4 " : "float ") + name + ";\n\nvoid main()\n{\n\t" + name +
-		   " = " + entryOf(settings, method) + "(ivec2(gl_FragCoord.xy));\n}\n";
+	const std::vector<ModulePass> passes = mainPasses(settings);
+	std::string text;
+	if (settings.main == ModuleMain::compute)
+	{
+		const bool glsl = !isHlsl(settings);
+		text +=
+			"\n// Dispatch (width + NOOK_GROUP - 1) / NOOK_GROUP by (height + NOOK_GROUP - 1) / NOOK_GROUP groups for the picture "
+			"nook_out.\n#ifndef NOOK_GROUP\n#define NOOK_GROUP 8\n#endif\n";
+		text += settings.target == GlslTarget::gl430 ? bindingMacro(settings.target, "NOOK_OUT_BINDING", 0)
+				: glsl                               ? bindingMacro(settings.target, "NOOK_OUT_BINDING", 15)
+													 : placeMacro("NOOK_OUT_BINDING", 0, 15);
+		text += glsl ? "layout(local_size_x = NOOK_GROUP, local_size_y = NOOK_GROUP) in;\n" : "";
+	}
+	if (passes.size() == 1)
+	{
+		return text + "\n" + mainOf(settings, passes.front());
+	}
+	text += "\n// The pass that main computes.\n#ifndef NOOK_PASS\n#define NOOK_PASS 0\n#endif\n";
+	for (std::size_t i = 0; i < passes.size(); ++i)
+	{
+		text += (i == 0 ? "#if" : "#elif") + std::string(" NOOK_PASS == ") + std::to_string(i) + "\n" + mainOf(settings, passes[i]);
+	}
+	return text + "#else\n#error nook: NOOK_PASS: expected 0 to " + std::to_string(passes.size() - 1) + "\n#endif\n";
 }
 
 } // namespace
@@ -339,6 +480,16 @@ std::string mainText(const ModuleSettings& settings)
 std::span<const std::string_view> glslTargets()
 {
 	return kTargets;
+}
+
+std::span<const std::string_view> hlslTargets()
+{
+	return kHlslTargets;
+}
+
+bool hasCompute(GlslTarget target)
+{
+	return hasBindings(target);
 }
 
 std::string stemOf(const MethodRow& row)
@@ -425,24 +576,26 @@ std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& contex
 	const auto textOf = [&](const Input& input)
 	{
 		return makes_normals && std::string_view(kNormal) == input.function ? of_normals + madeNormalText(input)
-																			: inputText(settings.target, input);
+																			: inputText(settings, input);
 	};
-	std::string inputs = settings.device_depth ? of_device + inputText(settings.target, kDeviceDepth) : "";
+	std::string inputs = settings.device_depth ? of_device + inputText(settings, kDeviceDepth) : "";
 	for (const Input& input : std::span(kInputs).subspan(settings.device_depth ? 1 : 0))
 	{
 		inputs += writer.uses(input.function) ? textOf(input) : "";
 	}
 	for (const PassInput& input : kPassInputs)
 	{
-		inputs += writer.uses(input.function) ? passInputText(settings.target, input) : "";
+		inputs += writer.uses(input.function) ? passInputText(settings, input) : "";
 	}
-	const std::string guard = guardOf(settings) + "_GLSL";
-	const std::string text = commentBlock(notesOf(context, {}), "// ") + introductionOf(settings) + writer.credits() +
-							 (settings.main ? "" : "#ifndef " + guard + "\n#define " + guard + "\n") + headOf(settings.target) +
+	const bool whole = settings.main.has_value();
+	const std::string guard = guardOf(settings) + (isHlsl(settings) ? "_HLSL" : "_GLSL");
+	const std::string head = commentBlock(notesOf(context, {}), "// ");
+	const std::string text = introductionOf(settings) + writer.credits() +
+							 (whole ? "" : "#ifndef " + guard + "\n#define " + guard + "\n") + headOf(settings) +
 							 "#ifndef NOOK_SKY\n#define NOOK_SKY 1e30\n#endif\n" + blockText(settings) +
 							 (writer.uses("nook_pass") ? passText(settings) : "") + withIntegers(settings, inputs + functions) +
-							 (settings.main ? mainText(settings) : "\n#endif // " + guard + "\n");
-	return (settings.main ? versionLine(settings.target) : "") + text;
+							 (whole ? mainText(settings) : "\n#endif // " + guard + "\n");
+	return (whole ? versionLine(settings.target) : "") + head + (isHlsl(settings) ? toHlsl(text) : text);
 }
 
 } // namespace nook

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emits screen-space methods and their patterns as one GLSL file for an engine's shaders, and a C++ header or a JavaScript module
-// that fills its uniform block.
+// Emits screen-space methods and their patterns as one GLSL or HLSL file for an engine's shaders, and the code or data in C++,
+// JavaScript, C#, Python or JSON that fills its uniform block.
 //
-// The GLSL is an include file without #version, since engines prepend their own; with `main` it is a complete fragment shader.
+// The file is for inclusion, and GLSL has no #version, since engines prepend their own; with `main` it is a complete shader.
 // Sample counts, windows and features are constants, so that loops unroll and unused features are absent.
 #pragma once
 
@@ -27,8 +27,26 @@ enum class GlslTarget
 	gl430,  // OpenGL 4.3 and later: explicit bindings
 	es300,  // OpenGL ES 3.0 and later
 	vulkan, // Vulkan: GLSL 4.50 with descriptor sets and bindings
+	hlsl60, // HLSL for shader model 6.0, Direct3D 12; it needs nothing that 5.0 lacks
 };
 std::span<const std::string_view> glslTargets(); // 330 430 es300 vulkan
+std::span<const std::string_view> hlslTargets(); // 60
+
+// Complete shaders with the entry point `main`. The macro NOOK_PASS selects the pass: 0, the default, is the first one.
+enum class ModuleMain
+{
+	fragment,
+	compute, // writes to a storage image
+};
+bool hasCompute(GlslTarget target);
+
+// How a module reads the pictures that it does not compute itself.
+enum class ModuleTextures
+{
+	fixed,    // depth, normals and visibility through macros that an engine may define first; tiles and packed pictures directly
+	macros,   // all of them through macros
+	separate, // likewise; Vulkan: textures and one sampler, bound separately
+};
 
 // Where a tile's samples are stored. Every pixel of a window has its own, so the threads of a warp read different ones.
 enum class TilePlace
@@ -59,12 +77,13 @@ struct ModuleSettings
 	ShadeSettings shade; // features and filters; the method and the numbers in the block are ignored. A window requires tiles of
 						 // one size for all methods
 	bool gather = false; // also emit nookGather, for renderers with several samples per pixel
-	bool main = false;   // emit a complete fragment shader; one method only
-	bool device_depth = false;       // read depth as stored in a depth buffer, 0 to 1, for any projection
-	bool normals_from_depth = false; // reconstruct normals instead of reading them
-	bool float_block = false;        // make all integers of the block and of nook_pass floats
-	std::string header_namespace;    // namespace of the header's tiles and settings, so that a program may include several with one
-									 // method; empty: none
+	std::optional<ModuleMain> main{}; // a complete shader, of one method and without nookGather; none: functions to include
+	ModuleTextures textures = ModuleTextures::fixed; // HLSL: always separate
+	bool device_depth = false;                       // read depth as stored in a depth buffer, 0 to 1, for any projection
+	bool normals_from_depth = false;                 // reconstruct normals instead of reading them
+	bool float_block = false;                        // make all integers of the block and of nook_pass floats
+	std::string header_namespace; // namespace of the header's tiles and settings, so that a program may include several with one
+								  // method; empty: none
 };
 
 // The value of nook_pass while a pass is drawn: constants that shade blocks hold but module blocks do not.
@@ -93,7 +112,7 @@ std::string readSamples(const std::string& path, std::optional<std::size_t> coun
 // Throws Error (invalid_input) where a window filter would find no window, or more than one.
 void checkWindows(const ModuleSettings& settings);
 
-// A module's bytes depend on its arguments alone.
+// The module in its target's language. Its bytes depend on the arguments alone.
 std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& context);
 
 // Plain C++17 without dependencies: struct nook_block with the memory layout of the GLSL's block, nook_fill, settings of each
@@ -103,6 +122,13 @@ std::string moduleHeader(const ModuleSettings& settings, const EmitContext& cont
 // These contents as a JavaScript module without dependencies: fill(projection, settings), with the same bytes as nook_fill, the
 // members of the block, the texels, the recipes' settings, and the GLSL if given.
 std::string moduleScript(const ModuleSettings& settings, const EmitContext& context, std::string_view glsl);
+
+// The same in C#, for Unity among others, and in Python.
+std::string moduleSharp(const ModuleSettings& settings, const EmitContext& context);
+std::string modulePython(const ModuleSettings& settings, const EmitContext& context);
+
+// "schema": "nook.module/1", one line: the members of the block with types and offsets, settings per method, and texels.
+std::string moduleJson(const ModuleSettings& settings, const EmitContext& context);
 
 // Emits one GLSL file with the shader stages that draw a file of volumes.
 

@@ -31,7 +31,7 @@ std::vector<std::pair<std::string, std::string>> presetsOf(const ModuleSettings&
 // True if the language's API has NDC z from 0 to 1, the preset for depth buffers.
 inline bool hasUnitClip(const ModuleSettings& settings)
 {
-	return settings.target == GlslTarget::vulkan;
+	return settings.target == GlslTarget::vulkan || settings.target == GlslTarget::hlsl60;
 }
 
 // Features of a method.
@@ -73,30 +73,20 @@ std::string membersText(const ModuleSettings& settings);
 std::string typeOf(const ModuleSettings& settings, const BlockMember& member);
 std::string withIntegers(const ModuleSettings& settings, const std::string& functions);
 
+// The main functions of a complete shader: one per pass of the introduction's list.
+struct ModulePass
+{
+	std::string call;   // at the texel `at`
+	std::string type;   // vec4
+	std::string format; // of a storage image: rgba8
+};
+std::vector<ModulePass> mainPasses(const ModuleSettings& settings);
+
+// GLSL declarations and functions in the kernels' subset as HLSL: names of types and functions, words that HLSL reserves, and
+// comparisons of vectors, which return vectors there.
+std::string toHlsl(const std::string& module);
+
 // The file's introduction: its functions and the passes to draw.
 std::string introductionOf(const ModuleSettings& settings);
-
-// Translates the C++ that fills the uniform block (methods/runtime/nook_block.h) to JavaScript that computes the same numbers.
-//
-// Supported: structs of numbers with defaults, one member per line, with its comment after it or on the lines before; inline
-// functions of declarations, assignments, if, for and return; arrays; strings; static_cast around the whole right side; the
-// functions of <cmath> that both languages round alike.
-
-struct ScriptField
-{
-	std::string type; // C++ type: "double"
-	std::string name;
-	std::string value; // default value in JavaScript
-	std::string meaning;
-};
-
-struct ScriptText
-{
-	std::string functions;             // with their comments
-	std::vector<ScriptField> settings; // members of nook_settings
-};
-
-// Throws Error (runtime) for an unsupported statement.
-ScriptText scriptOf(std::string_view header);
 
 } // namespace nook

@@ -354,7 +354,8 @@ std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleM
 			continue;
 		}
 		ModuleEntry entry{call, constantsOf(pass.block), pass.packing, pass.of_pixel};
-		entry.constants["NOOK_NATIVE_BITS"] = settings.target == GlslTarget::gl430 || settings.target == GlslTarget::vulkan ? "1" : "0";
+		const bool portable = settings.target == GlslTarget::gl330 || settings.target == GlslTarget::es300;
+		entry.constants["NOOK_NATIVE_BITS"] = portable ? "0" : "1";
 		for (const Varying& one : kVarying)
 		{
 			entry.constants[one.constant] = settings.float_block ? "int(" + std::string(one.place) + ")" : one.place;
@@ -362,6 +363,47 @@ std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleM
 		entries.push_back(entry);
 	}
 	return entries;
+}
+
+std::vector<ModulePass> mainPasses(const ModuleSettings& settings)
+{
+	const ModuleMethod& method = settings.methods.front();
+	const ShadeSettings& shade = shadeOf(settings, method);
+	const ShadePlan plan = planFor(settings, method);
+	std::vector<ModulePass> passes;
+	std::string entry;
+	for (const ShadePass& pass : plan.passes)
+	{
+		const std::string_view kernel = pass.kernel.call;
+		if (kernel == "nookUpsample") // nook...Full calls it
+		{
+			continue;
+		}
+		entry = pass.of_pixel ? pass.kernel.call : entry;
+		const bool of_cell = pass.of_pixel && shade.half_resolution && pass.packing == ShadePacking::none;
+		const std::string call = pass.fills ? entry + "Full(at)" : moduleCallOf(pass) + (of_cell ? "(2 * at)" : "(at)");
+		const auto same = [&call](const ModulePass& one)
+		{
+			return one.call == call;
+		};
+		if (std::any_of(passes.begin(), passes.end(), same))
+		{
+			continue;
+		}
+		switch (plan.pictures[pass.picture].format)
+		{
+		case PictureFormat::scalar: passes.push_back({call, "float", kernel == "nookCoarser" ? "r32f" : "r8"}); break;
+		case PictureFormat::counts: passes.push_back({call, "uvec4", "rgba32ui"}); break;
+		case PictureFormat::quad:
+		{
+			const bool links = pass.packing == ShadePacking::links || kernel == "nookBilateralX" || kernel == "nookBentLinked";
+			const bool bent = hasBentNormals(settings, method) && !links;
+			passes.push_back({call, "vec4", links ? "rgba8" : bent ? "rgba16f" : "rgba32f"});
+			break;
+		}
+		}
+	}
+	return passes;
 }
 
 std::string entryOf(const ModuleSettings& settings, const ModuleMethod& method)
@@ -453,9 +495,21 @@ std::string introductionOf(const ModuleSettings& settings)
 				"// nookNormalFromDepth(pixel) into a picture first, and define NOOK_NORMAL(pixel) to read it in the passes after "
 				"it.\n";
 	}
-	text += "// Pixels count as in texelFetch. `nook emit -o FILE.h` writes the C++ that fills the uniform block, `-o FILE.js` the "
-			"JavaScript.\n";
-	text += settings.main ? "" : "// This file has no #version: include it after yours. All its names begin with nook or NOOK.\n";
+	const bool hlsl = settings.target == GlslTarget::hlsl60;
+	text += "// Pixels count as in " + std::string(hlsl ? "Load" : "texelFetch") +
+			". `nook emit -o FILE.h` writes the C++ that fills the uniform block, `-o FILE.js` the JavaScript.\n";
+	text += settings.main ? "// This is a complete shader; its entry point is main.\n"
+			: hlsl        ? "// This is a file to include. All its names begin with nook or NOOK.\n"
+						  : "// This file has no #version: include it after yours. All its names begin with nook or NOOK.\n";
+	if (const std::vector<ModulePass> passes = settings.main ? mainPasses(settings) : std::vector<ModulePass>{}; passes.size() > 1)
+	{
+		text += "// Define NOOK_PASS first to choose what main computes:";
+		for (std::size_t i = 0; i < passes.size(); ++i)
+		{
+			text += (i == 0 ? " " : ", ") + std::to_string(i) + " " + passes[i].call.substr(0, passes[i].call.find('('));
+		}
+		text += ".\n";
+	}
 	return text;
 }
 

@@ -19,7 +19,7 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 4> kModuleFormats{".glsl", ".hlsl", ".h", ".js"};
+constexpr std::array<std::string_view, 5> kModuleFormats{".glsl", ".hlsl", ".wgsl", ".h", ".js"};
 constexpr std::array<std::string_view, 2> kModuleNormals{"texture", "from-depth"};
 constexpr std::array<std::string_view, 2> kModuleBlocks{"mixed", "floats"};
 constexpr std::array<std::string_view, 2> kModuleMains{"fragment", "compute"};
@@ -34,6 +34,7 @@ struct EmitOptions
 	std::string counts;
 	ModuleSettings settings;
 	std::optional<int> hlsl;
+	bool wgsl = false;
 	int directions = 128;
 	std::string recipe = "rays"; // paper, rays or a file
 	Outputs outputs;
@@ -50,11 +51,11 @@ bool isHlsl(const EmitOptions& options)
 }
 std::string languageOption(const EmitOptions& options)
 {
-	return isHlsl(options) ? "--hlsl" : "--glsl";
+	return isHlsl(options) ? "--hlsl" : options.wgsl ? "--wgsl" : "--glsl";
 }
 bool hasLanguage(const EmitOptions& options)
 {
-	return options.given("--glsl") || options.given("--hlsl");
+	return options.given("--glsl") || options.given("--hlsl") || options.wgsl;
 }
 
 // Standard output gets the module.
@@ -123,6 +124,7 @@ void declare(CLI::App& app, EmitOptions& options)
 		  "Language of the .glsl file: OpenGL 3.3, OpenGL 4.3 (explicit bindings), OpenGL ES 3.0, or Vulkan (GLSL 4.50)"},
 		 {"--hlsl", takesChoice(hlslTargets(), options.hlsl),
 		  "Language of the .hlsl file instead: HLSL, shader model 6.0 (Direct3D 12, Unity, Unreal)", screen},
+		 {"--wgsl", takesFlag(options.wgsl), "WGSL instead, in a .wgsl file (WebGPU, Bevy, Babylon.js)", screen},
 		 {"--textures", takesChoice(kModuleTextures, settings.textures),
 		  "How a .glsl file reads textures: tiles and packed pictures directly (fixed, default); all of them through macros that "
 		  "you "
@@ -221,25 +223,29 @@ void checkLanguage(const EmitOptions& options)
 {
 	const ModuleSettings& settings = options.settings;
 	const std::string name = languageOption(options);
-	if (isHlsl(options))
+	if (isHlsl(options) || options.wgsl)
 	{
-		refuseGiven(*options.app, {"--glsl"}, "with --hlsl, expected one language per run");
-		refuseGiven(*options.app, {"--textures"}, "with --hlsl, whose textures always are separate and behind macros");
+		refuseGiven(*options.app, {"--glsl"}, "with " + name + ", expected one language per run");
+		refuseGiven(*options.app, {"--textures"}, "with " + name + ", whose textures always are separate");
+	}
+	if (isHlsl(options) && options.wgsl)
+	{
+		refuse("--wgsl: found with --hlsl, expected one language per run");
 	}
 	for (const std::string& path : options.outputs.files)
 	{
 		const std::string_view format = formatOf(path, kModuleFormats);
 		if (isShader(path) && !hasLanguage(options))
 		{
-			const std::string missing = format == ".hlsl" ? "--hlsl" : "--glsl";
-			refuse(missing + ": missing, expected one for the " + std::string(format == ".hlsl" ? format : ".glsl") + " file");
+			const std::string missing(format.empty() ? "glsl" : format.substr(1));
+			refuse("--" + missing + ": missing, expected one for the ." + missing + " file");
 		}
-		if ((format == ".hlsl" && !isHlsl(options)) || (format == ".glsl" && isHlsl(options)))
+		if (isShader(path) && !format.empty() && format.substr(1) != name.substr(2))
 		{
 			refuse(path + ": found with " + name + ", expected -o FILE." + name.substr(2));
 		}
 	}
-	const std::string target = name == "--hlsl" ? "60" : std::string(glslTargets()[static_cast<std::size_t>(settings.target)]);
+	const std::string target = name == "--glsl" ? std::string(glslTargets()[static_cast<std::size_t>(settings.target)]) : "";
 	if (settings.main == ModuleMain::compute && !hasCompute(settings.target))
 	{
 		refuse("--main compute: found --glsl " + target + ", which has no compute shaders, expected --glsl 430, vulkan or --hlsl");
@@ -282,7 +288,8 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	if (!glsl && !files.empty())
 	{
 		const std::string without = "without a .glsl file, expected -o FILE.glsl as well";
-		refuseGiven(*options.app, {"--glsl", "--hlsl", "--textures", "--depth", "--normals", "--gather", "--main"}, without);
+		refuseGiven(*options.app, {"--glsl", "--hlsl", "--wgsl", "--textures", "--depth", "--normals", "--gather", "--main"},
+					without);
 		for (const FeatureRow* const row : given)
 		{
 			if (!isOfHeader(row))
@@ -344,8 +351,9 @@ std::string emitCommand(const EmitOptions& options, const std::vector<std::strin
 	}
 	if (glsl || settings.device_depth)
 	{
-		command += isHlsl(options) ? " --hlsl " + std::string(hlslTargets().front())
-								   : " --glsl " + std::string(glslTargets()[static_cast<std::size_t>(settings.target)]);
+		command += options.wgsl      ? " --wgsl"
+				   : isHlsl(options) ? " --hlsl " + std::string(hlslTargets().front())
+									 : " --glsl " + std::string(glslTargets()[static_cast<std::size_t>(settings.target)]);
 	}
 	return command;
 }
@@ -398,7 +406,7 @@ void emitVolumes(const EmitOptions& options, bool mask)
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
-		if (!isShader(path) || formatOf(path, kModuleFormats) == ".hlsl")
+		if (formatOf(path, kModuleFormats) == ".hlsl" || formatOf(path, kModuleFormats) == ".wgsl" || !isShader(path))
 		{
 			refuse(path + ": found " + (isScript(path) ? "a script" : "a header") +
 				   ", expected a .glsl file alone: nook_volumes_draw.h fills the block");
@@ -419,7 +427,7 @@ void run(EmitOptions& options, VerbProgress&)
 		emitVolumes(options, row->masks);
 		return;
 	}
-	options.settings.target = options.hlsl ? GlslTarget::hlsl60 : options.settings.target;
+	options.settings.target = options.wgsl ? GlslTarget::wgsl : options.hlsl ? GlslTarget::hlsl60 : options.settings.target;
 	const std::vector<ShadeMethod> methods = methodsOf(options.methods);
 	const std::vector<std::string> patterns = partsOf(options.patterns);
 	const std::vector<std::size_t> counts = countsOf(options, patterns.size());

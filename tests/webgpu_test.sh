@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: webgpu_test.sh PROGRAM SOURCE FOLDER. nook emit --wgsl: complete shaders of every method, drawn by Dawn, equal the pictures
+# of nook shade within 1/255; what is refused. WebGPU for Node.js is downloaded from npm's registry once into FOLDER. Exit code 77: no
+# npm, registry or Vulkan driver.
+set -u
+nook=$(realpath "$1")
+source=$(realpath "$2")
+cache=$3
+. "$(dirname "$0")/table.sh"
+
+skip()
+{
+	echo "skipped: $*" >&2
+	exit 77
+}
+
+command -v node >/dev/null && command -v npm >/dev/null || skip "found no node or no npm, expected both (scripts/setup.sh)"
+mkdir -p "$cache" && cp "$source"/tests/webgpu/* "$cache" && cache=$(realpath "$cache") || exit 1
+if ! [ -e "$cache/installed" ]; then
+	(cd "$cache" && timeout 120 npm ci --no-audit --no-fund --ignore-scripts --fetch-retries 1 --fetch-timeout 30000) >"$folder/log" 2>&1 ||
+		skip "npm could not install webgpu: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
+	touch "$cache/installed" # only once everything is installed
+fi
+# Chromium's driver on the CPU, because Dawn refuses Mesa's as incomplete.
+for driver in /usr/lib/chromium/vk_swiftshader_icd.json; do
+	[ -e "$driver" ] && export VK_ICD_FILENAMES="$driver"
+done
+
+cd "$folder" || exit 1
+for domain in disk ball hemisphere; do
+	"$nook" pattern --domain $domain --count 6 --starts 1 -o $domain.json || problem "$domain: not made"
+	"$nook" tile --pattern $domain.json --size 4 --kind random -o ${domain}_tile.json || problem "$domain: no tile"
+done
+"$nook" pattern --domain disk --count 6 --order progressive --starts 1 -o bands.json || problem "bands: not made"
+"$nook" gbuffer builtin:suburb --camera auto:1 --size 80x48 -o g.exr || problem "no G-buffer"
+names=
+
+# drawn NAME METHOD SAMPLES EMIT_OPTIONS SHADE_OPTIONS OPTIONS…: a complete shader, and the picture and passes of nook shade.
+drawn()
+{
+	name=$1
+	method="$2 --methods"
+	samples=$3
+	emits=$4
+	shades=$5
+	method=$2
+	shift 5
+	"$nook" emit --methods "$method" ${samples:+--patterns "$samples"} --wgsl --main fragment $emits "$@" -o "$name.wgsl" || problem "$name: not emitted"
+	for file in exr json; do
+		"$nook" shade g.exr --method "$method" ${samples:+--pattern "$samples"} --radius 1.5 $shades "$@" -o "$name.$file" || problem "$name: not drawn"
+	done
+	names="$names $name"
+}
+drawn lines vo-line disk_tile.json "" "" --filter window
+drawn lines-normals vo-line disk_tile.json "--tile array" "" --normals from-depth --filter bilateral --falloff quadratic
+drawn lines-half vo-line disk_tile.json "--block floats" "" --filter bilateral --resolution half
+drawn lines-bands vo-line bands.json "" "" --bands 3 --recipe paper
+drawn points vo-point ball_tile.json "" "" --filter bilateral
+drawn areas vo-area disk_tile.json "" "" --filter bilateral
+drawn alchemy alchemy hemisphere_tile.json "" "" --filter window --depth-levels 3
+drawn alchemy-cut alchemy hemisphere.json "" "" --cut --recipe paper
+drawn statvo statvo "" "" "" --quadrants --filter bilateral
+drawn statvo-uniform statvo "" "--block floats" "" --layering uniform --layers 8 --tables half --recipe paper
+drawn slices slices "" "" "" --filter bilateral --slices 2
+drawn slices-bent slices "" "" "" --bent --filter bilateral
+node "$cache/draw.mjs" "$source" $names >said 2>log
+code=$?
+[ $code = 77 ] && skip "$(cat said)"
+[ $code = 0 ] || problem "draw.mjs: exit code $code: $(tail -n 3 log)"
+for name in $names; do
+	checks=$((checks + 1))
+	# Slices count bits, which rounding may change in single pixels.
+	case $name in slices*) most=4 ;; *) most=0 ;; esac
+	result=$(sed -n "s/^$name //p" said)
+	[ -n "$result" ] && [ "${result##* }" -le $most ] 2>/dev/null || problem "$name: found '$result', expected at most $most pixels beyond 1/255"
+done
+cat said
+finish

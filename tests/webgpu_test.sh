@@ -63,6 +63,10 @@ drawn statvo statvo "" "" "" --quadrants --filter bilateral
 drawn statvo-uniform statvo "" "--block floats" "" --layering uniform --layers 8 --tables half --recipe paper
 drawn slices slices "" "" "" --filter bilateral --slices 2
 drawn slices-bent slices "" "" "" --bent --filter bilateral
+"$nook" emit --methods vo-line --patterns disk_tile.json --filter window --wgsl --main fragment -o nook_vo.js || problem "page: not emitted"
+cp lines.exr page.exr
+names="$names page"
+echo '{ "type": "module" }' >package.json # for nook_vo.js
 node "$cache/draw.mjs" "$source" $names >said 2>log
 code=$?
 [ $code = 77 ] && skip "$(cat said)"

@@ -243,6 +243,13 @@ private:
 		}
 	}
 
+	// The text in front of a mark that must follow.
+	std::string ended(const std::string& text, const std::string& mark)
+	{
+		expect(mark);
+		return text + mark;
+	}
+
 	std::string type()
 	{
 		const std::string word = next();
@@ -268,10 +275,10 @@ private:
 		return isAmong(kReserved, name) ? name + "_" : name;
 	}
 
-	// Puts a name into the innermost scope.
+	// Kernels have no name for two things, since they compile without warnings of shadowed names.
 	std::string declared(const std::string& name, const std::string& type)
 	{
-		m_scopes.back()[name] = type;
+		m_types[name] = type;
 		return safe(name);
 	}
 
@@ -331,8 +338,8 @@ private:
 			expect(")");
 			text = "array<" + of + ", " + size + ">(" + text + "\n)";
 		}
-		expect(";");
-		write(m_text, start, "const " + declared(called, size.empty() ? of : "array " + of) + " = " + text + ";");
+		const std::string name_text = declared(called, size.empty() ? of : "array " + of);
+		write(m_text, start, ended("const " + name_text + " = " + text, ";"));
 	}
 
 	// layout(…) uniform: a texture, a number or the block
@@ -365,8 +372,7 @@ private:
 			}
 			m_block = kind;
 			m_text += "}\n";
-			m_bindings += at + "<uniform> " + declared(name(), kind) + ": " + kind + ";\n";
-			expect(";");
+			m_bindings += ended(at + "<uniform> " + declared(name(), kind) + ": " + kind, ";") + "\n";
 		}
 		else
 		{
@@ -380,9 +386,7 @@ private:
 			{
 				of = (parts[2].matched ? "texture_2d_array<" : "texture_2d<") + (parts.length(1) == 0 ? "f" : parts.str(1)) + "32>";
 			}
-			const std::string called = declared(name(), of);
-			expect(";");
-			write(m_bindings, start, at + space + called + ": " + of + ";");
+			write(m_bindings, start, ended(at + space + declared(name(), of) + ": " + of, ";"));
 		}
 	}
 
@@ -395,7 +399,6 @@ private:
 		std::vector<std::string>& types = m_functions[called];
 		std::vector<std::string> names;
 		declared(called, result);
-		m_scopes.emplace_back();
 		for (expect("("); !take(")"); take(","))
 		{
 			types.push_back(type());
@@ -422,25 +425,20 @@ private:
 		write(m_text, start, "fn " + called + "(" + parameters + ") -> " + result);
 		m_at = end;
 		m_text += body;
-		m_scopes.pop_back();
 	}
 
 	void block()
 	{
 		std::size_t start = m_at;
-		expect("{");
-		write(m_text, start, "{");
+		write(m_text, start, ended("", "{"));
 		m_depth += 1;
-		m_scopes.emplace_back();
 		while (peek() != "}")
 		{
 			statement();
 		}
-		m_scopes.pop_back();
 		m_depth -= 1;
 		start = m_at;
-		expect("}");
-		write(m_text, start, "}");
+		write(m_text, start, ended("", "}"));
 	}
 
 	void statement(const std::string& before = "")
@@ -451,23 +449,12 @@ private:
 		{
 			next();
 			expect("(");
-			m_scopes.emplace_back();
-			std::string head;
-			if (word == "for")
-			{
-				head = simple() + "; ";
-				expect(";");
-			}
-			head += expression("bool").text;
-			if (word == "for")
-			{
-				expect(";");
-				head += "; " + simple();
-			}
-			expect(")");
-			write(m_text, start, before + word + " (" + head + ")");
+			const bool counts = word == "for";
+			std::string head = counts ? ended(simple(), ";") + " " : "";
+			head += ended(expression("bool").text, counts ? ";" : ")");
+			head += counts ? " " + ended(simple(), ")") : "";
+			write(m_text, start, before + word + " (" + head);
 			block();
-			m_scopes.pop_back();
 			start = m_at;
 			if (word == "if" && take("else"))
 			{
@@ -625,20 +612,18 @@ private:
 		{
 			return {word, number.empty() ? "bool" : number};
 		}
-		const auto scope = std::find_if(m_scopes.rbegin(), m_scopes.rend(), [&](const auto& one) { return one.contains(word); });
-		if (scope == m_scopes.rend())
+		const auto found = m_types.find(word);
+		if (found == m_types.end())
 		{
 			refuse(word, "a value");
 		}
-		const std::string type = scope->at(word);
+		const std::string type = found->second;
 		if (!type.starts_with("array "))
 		{
 			return {safe(word), type};
 		}
 		expect("[");
-		const std::string index = expression("i32").text;
-		expect("]");
-		return {safe(word) + "[" + index + "]", type.substr(6)};
+		return {safe(word) + "[" + ended(expression("i32").text, "]"), type.substr(6)};
 	}
 
 	WgslValue called(const std::string& word)
@@ -664,7 +649,7 @@ private:
 		const auto function = m_functions.find(word);
 		if (function != m_functions.end() && function->second == types)
 		{
-			return {word + "(" + all + ")", m_scopes.front()[word]};
+			return {word + "(" + all + ")", m_types[word]};
 		}
 		if (word == "texelFetch" && types.size() == 3 && types[0].starts_with("texture"))
 		{
@@ -692,7 +677,7 @@ private:
 	std::string m_where; // for messages
 	std::string m_bindings;
 	std::string m_text;
-	std::vector<std::map<std::string, std::string>> m_scopes{1}; // names → types
+	std::map<std::string, std::string> m_types;                  // of names
 	std::map<std::string, std::vector<std::string>> m_functions; // → types of their parameters
 	std::string m_block;                                         // type of the uniform block
 	std::map<std::string, std::string> m_members;                // of the block → types

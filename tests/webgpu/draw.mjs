@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Usage: draw.mjs SOURCE NAME…: draws the complete shaders NAME.wgsl with WebGPU over the G-buffer in g.exr, by the passes in
-// NAME.json, and compares the last picture with NAME.exr: for each, the greatest difference and the pixels beyond 1/255. Exit code 77:
+// NAME.json, or `page` by the script of a page, and compares the last picture with NAME.exr: for each, the greatest difference and the pixels beyond 1/255. Exit code 77:
 // no adapter.
 import { readFileSync } from 'node:fs';
 import { pathToFileURL } from 'node:url';
@@ -33,6 +33,11 @@ function bufferOf(bytes) {
 	return { buffer };
 }
 
+function normalsOf({ width, height, channels }) {
+	return pictureOf({ format: 'quad', width, height },
+		Float32Array.from({ length: 4 * width * height }, (_, i) => (i % 4 < 3 ? channels[`N.${'XYZ'[i % 4]}`][i >> 2] : 0)));
+}
+
 const bytesOf = text => Uint8Array.from(Buffer.from(text, 'base64'));
 
 // Its numbers are floats where the module's are.
@@ -61,6 +66,17 @@ function viewOf(picture, pass, own, dimension) {
 	return picture.texture.createView({ dimension, ...(own && pass.level > 0 ? { mipLevelCount: pass.level } : own ? { arrayLayerCount: pass.layer } : {}) });
 }
 
+// Submits the commands; returns visibility: the last channel, next to bent normals.
+async function readPicture({ texture, width, height, channels }, encoder) {
+	const row = Math.ceil(width * channels / 64) * 64;
+	const read = device.createBuffer({ size: 4 * row * height, usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST });
+	encoder.copyTextureToBuffer({ texture }, { buffer: read, bytesPerRow: 4 * row }, [width, height]);
+	device.queue.submit([encoder.finish()]);
+	await read.mapAsync(GPUMapMode.READ);
+	const numbers = new Float32Array(read.getMappedRange());
+	return Float32Array.from({ length: width * height }, (_, i) => numbers[Math.floor(i / width) * row + (i % width + 1) * channels - 1]);
+}
+
 async function drawn(name, { width, height, channels }) {
 	const wgsl = readFileSync(`${name}.wgsl`, 'utf8'), plan = JSON.parse(readFileSync(`${name}.json`, 'utf8'));
 	const module = device.createShaderModule({ code: wgsl }), pipelines = new Map();
@@ -69,7 +85,7 @@ async function drawn(name, { width, height, channels }) {
 	const pictures = plan.pictures.map(shape => pictureOf(shape));
 	const inputs = {
 		nook_depths: pictureOf({ format: 'scalar', width, height }, channels.Z),
-		nook_normals: pictureOf({ format: 'quad', width, height }, Float32Array.from({ length: 4 * width * height }, (_, i) => (i % 4 < 3 ? channels[`N.${'XYZ'[i % 4]}`][i >> 2] : 0))),
+		nook_normals: normalsOf({ width, height, channels }),
 		tile: plan.tile && pictureOf({ format: 'quad', ...plan.tile }, bytesOf(plan.tile.texels)),
 	};
 	const block = blockOf(plan, wgsl), encoder = device.createCommandEncoder();
@@ -97,14 +113,18 @@ async function drawn(name, { width, height, channels }) {
 		drawing.end();
 		if (whole) break;
 	}
-	const row = Math.ceil(picture.width * picture.channels / 64) * 64;
-	const read = device.createBuffer({ size: 4 * row * picture.height, usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST });
-	encoder.copyTextureToBuffer({ texture: picture.texture }, { buffer: read, bytesPerRow: 4 * row }, [picture.width, picture.height]);
-	device.queue.submit([encoder.finish()]);
-	await read.mapAsync(GPUMapMode.READ);
-	const numbers = new Float32Array(read.getMappedRange());
-	// Visibility: the last channel, next to bent normals.
-	return Float32Array.from({ length: picture.width * picture.height }, (_, i) => numbers[Math.floor(i / picture.width) * row + (i % picture.width + 1) * picture.channels - 1]);
+	return readPicture(picture, encoder);
+}
+
+// The first picture, by the script in docs/reference/modules.md and the module nook_vo.js.
+async function drawnByPage({ width, height, channels, attributes }) {
+	const script = /## WGSL[^]*?```js\nimport (\{[^}]*\})[^\n]*\n([^]*?)```/.exec(readFileSync(`${source}/docs/reference/modules.md`, 'utf8'));
+	const depths = pictureOf({ format: 'scalar', width, height }, channels.Z).texture, normals = normalsOf({ width, height, channels }).texture;
+	const [lines, visibility] = [0, 1].map(() => pictureOf({ format: 'scalar', width, height }));
+	const projection = attributes.projection64, encoder = device.createCommandEncoder();
+	new Function('made', 'device', 'encoder', 'projection', 'width', 'height', 'depths', 'normals', 'lines', 'visibility', `const ${script[1]} = made;${script[2]}`)(
+		await import(pathToFileURL('nook_vo.js')), device, encoder, projection, width, height, depths, normals, lines.texture, visibility.texture);
+	return readPicture(visibility, encoder);
 }
 
 const gbuffer = readExr('g.exr');
@@ -112,7 +132,7 @@ for (const name of names) {
 	device.pushErrorScope('validation');
 	let result;
 	try {
-		const found = await drawn(name, gbuffer), expected = readExr(`${name}.exr`).channels.visibility;
+		const found = await (name === 'page' ? drawnByPage(gbuffer) : drawn(name, gbuffer)), expected = readExr(`${name}.exr`).channels.visibility;
 		const apart = Array.from(found, (value, i) => Math.abs(value - expected[i]));
 		result = `${Math.max(...apart)} ${apart.filter(one => !(one <= 1 / 255)).length}`;
 	} catch (error) {

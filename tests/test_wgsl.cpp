@@ -48,6 +48,7 @@ TEST_CASE("wgsl: statements and operators of kernels", "[emit]")
 	CHECK(bodyInWgsl("\treturn c ? a : a * b;") == "\tif (c)\n\t{\n\t\treturn a;\n\t}\n\treturn a * b;\n");
 	CHECK(bodyInWgsl("\tbool d = c && c || c;\n\tint j = 1 + i.x & 2;\n\tfloat e = b - (b - b);") ==
 		  "\tlet d: bool = (c && c) || c;\n\tlet j: i32 = (1 + i.x) & 2;\n\tlet e: f32 = b - (b - b);\n");
+	CHECK(bodyInWgsl("\tfloat d = cos(b) * sin(b);") == "\tlet d: f32 = nookSin(b + 1.57079633f) * nookSin(b);\n");
 	CHECK(bodyInWgsl("\tint d = bitCount(uint(i.x));") == "\tlet d: i32 = i32(countOneBits(u32(i.x)));\n");
 }
 

@@ -34,7 +34,21 @@ constexpr std::string_view kReserved =
 
 // Functions of both languages whose result has the type of their arguments.
 constexpr std::string_view kFunctions =
-	" abs sign floor ceil fract trunc sqrt exp exp2 log log2 pow sin cos tan asin acos atan normalize min max clamp mix cross ";
+	" abs sign floor ceil fract trunc sqrt exp exp2 log log2 pow tan asin acos atan normalize min max clamp mix cross ";
+
+// WGSL's own sine may be off by 2^-11, which changes the bits of masks.
+constexpr const char* kSine = R"(
+// Sine, as exact as floats are for a few turns.
+fn nookSin(angle: f32) -> f32
+{
+	let half_turns = round(angle * 0.318309886f);
+	let rest = (angle - half_turns * 3.140625f) - half_turns * 9.67653589793e-4f;
+	let z = rest * rest;
+	let series = -1.6666667e-1f + z * (8.3333333e-3f + z * (-1.9841270e-4f + z * (2.7557319e-6f - z * 2.5052108e-8f)));
+	let sine = rest + rest * z * series;
+	return select(sine, -sine, abs(half_turns % 2.0f) > 0.5f);
+}
+)";
 
 // Binary operators, by how tightly they bind in GLSL.
 constexpr std::array<std::string_view, 11> kOperators{"",        " || ",        " && ",    " | ",   " ^ ",    " & ",
@@ -102,11 +116,13 @@ std::string typeOfNumber(const std::string& text)
 }
 
 // Comments of modules speak of GLSL; WGSL has neither macros nor versions, and no push constants.
-std::string withoutVulkan(std::string glsl)
+std::string withoutVulkan(std::string glsl, bool complete)
 {
-	constexpr std::array<std::array<const char*, 2>, 8> phrases{
+	const char* const use =
+		complete ? "// This is a complete shader. Its entry points are at the end" : "// Put it in front of your code";
+	const std::array<std::array<const char*, 2>, 8> phrases{
 		{{R"(// Define NOOK_\w+\([^)]*\) before this file[^\n]*)", "// Change the function that reads it to read your own."},
-		 {"(// )This file has no #version: include it after yours", "$1Put it in front of your code"},
+		 {"// This file has no #version: include it after yours", use},
 		 {R"((//[^\n]*)GL_TEXTURE_MAX_LEVEL, or an image view)", "$1a view of them"},
 		 {R"((//[^\n]*)define NOOK_NORMAL\(pixel\) to read)", "$1change nookNormal to read"},
 		 {"(//[^\n]*)texelFetch", "$1textureLoad"},
@@ -209,7 +225,8 @@ public:
 			m_where = "the module";
 			declare();
 		}
-		return "\n// Everything that a pipeline binds. The block is laid out as std140.\n" + m_bindings + m_text;
+		return "\n// Everything that a pipeline binds. The block is laid out as std140.\n" + m_bindings + m_text +
+			   (m_turns ? kSine : "");
 	}
 
 private:
@@ -663,12 +680,17 @@ private:
 		{
 			return {word + "(" + all + ")", isAmong(kFunctions, word) ? types[0] : "f32"};
 		}
+		if (alike && isAmong(" sin cos ", word) && types[0] == "f32")
+		{
+			m_turns = true;
+			return {"nookSin(" + all + (word == "cos" ? " + 1.57079633f)" : ")"), "f32"};
+		}
 		if (alike && word == "bitCount" && types[0] == "u32")
 		{
 			return {"i32(countOneBits(" + all + "))", "i32"};
 		}
 		refuse(word + "(" + all + ")", "a function of the module, or one of" + std::string(kFunctions) +
-										   "dot length distance bitCount texelFetch, with arguments of its types");
+										   "sin cos dot length distance bitCount texelFetch, with arguments of its types");
 	}
 
 	std::vector<WgslToken> m_tokens;
@@ -679,6 +701,7 @@ private:
 	std::string m_text;
 	std::map<std::string, std::string> m_types;                  // of names
 	std::map<std::string, std::vector<std::string>> m_functions; // → types of their parameters
+	bool m_turns = false;                                        // calls nookSin
 	std::string m_block;                                         // type of the uniform block
 	std::map<std::string, std::string> m_members;                // of the block → types
 	std::string m_result;                                        // type of the function being written
@@ -729,7 +752,7 @@ std::string moduleWgsl(const ModuleSettings& settings, const EmitContext& contex
 	ModuleSettings functions = settings;
 	functions.target = GlslTarget::vulkan;
 	functions.main.reset();
-	const std::string glsl = withoutVulkan(moduleGlsl(functions, context));
+	const std::string glsl = withoutVulkan(moduleGlsl(functions, context), settings.main.has_value());
 	const std::string head = glsl.substr(0, glsl.find("\n#") + 1);
 	return head + wgslOf(glsl.substr(head.size())) + (settings.main ? entriesText(settings) : "");
 }

@@ -22,7 +22,7 @@ const FORMATS = { scalar: ['r32float', 1], quad: ['rgba32float', 4], counts: ['r
 function pictureOf({ format, width, height, levels = 1, layers = 1 }, texels) {
 	const [inside, channels] = FORMATS[format], usage = GPUTextureUsage;
 	const texture = device.createTexture({ format: inside, size: [width, height, layers], mipLevelCount: levels,
-		usage: usage.COPY_SRC | usage.COPY_DST | usage.TEXTURE_BINDING | usage.RENDER_ATTACHMENT });
+		usage: usage.COPY_SRC | usage.COPY_DST | usage.TEXTURE_BINDING | usage.RENDER_ATTACHMENT | (levels * layers === 1 ? usage.STORAGE_BINDING : 0) });
 	if (texels) device.queue.writeTexture({ texture }, texels, { bytesPerRow: 4 * channels * width }, [width, height]);
 	return { format, inside, channels, texture, width, height };
 }
@@ -78,7 +78,7 @@ async function readPicture({ texture, width, height, channels }, encoder) {
 }
 
 async function drawn(name, { width, height, channels }) {
-	const wgsl = readFileSync(`${name}.wgsl`, 'utf8'), plan = JSON.parse(readFileSync(`${name}.json`, 'utf8'));
+	const wgsl = readFileSync(`${name}.wgsl`, 'utf8'), plan = JSON.parse(readFileSync(`${name}.json`, 'utf8')), compute = wgsl.includes('@compute');
 	const module = device.createShaderModule({ code: wgsl }), pipelines = new Map();
 	const problem = (await module.getCompilationInfo()).messages[0];
 	if (problem) throw new Error(`line ${problem.lineNum}: ${problem.message}`);
@@ -96,21 +96,24 @@ async function drawn(name, { width, height, channels }) {
 		const entryPoint = wgsl.includes('fn main(') ? 'main' : `main_${call}`;
 		picture = pictures[pass.picture];
 		if (!pipelines.has(entryPoint)) {
-			pipelines.set(entryPoint, await device.createRenderPipelineAsync({ layout: 'auto', vertex: { module, entryPoint: 'triangle' },
-				fragment: { module, entryPoint, targets: [{ format: picture.inside }] } }));
+			pipelines.set(entryPoint, compute ? await device.createComputePipelineAsync({ layout: 'auto', compute: { module, entryPoint } })
+				: await device.createRenderPipelineAsync({ layout: 'auto', vertex: { module, entryPoint: 'triangle' },
+					fragment: { module, entryPoint, targets: [{ format: picture.inside }] } }));
 		}
+		const view = picture.texture.createView({ dimension: '2d', baseMipLevel: pass.level, mipLevelCount: 1, baseArrayLayer: pass.layer, arrayLayerCount: 1 });
 		const entries = bindingsOf(wgsl, entryPoint).map(({ binding, name: variable, kind }) => {
 			const read = pass.reads.find(([slot]) => slot === variable), Kind = kind === 'vec4f' ? Float32Array : Int32Array;
 			return { binding, resource: variable === 'nook' ? block : variable === 'nook_pass' ? bufferOf(Kind.from(pass.numbers))
+				: variable.startsWith('nook_out_') ? view
 				: read ? viewOf(pictures[read[1]], pass, read[1] === pass.picture, kind === 'texture_2d_array' ? '2d-array' : '2d')
 				: inputs[variable.endsWith('_tile') ? 'tile' : variable].texture.createView() };
 		});
-		const view = picture.texture.createView({ dimension: '2d', baseMipLevel: pass.level, mipLevelCount: 1, baseArrayLayer: pass.layer, arrayLayerCount: 1 });
-		const drawing = encoder.beginRenderPass({ colorAttachments: [{ view, loadOp: 'clear', storeOp: 'store' }] });
-		drawing.setPipeline(pipelines.get(entryPoint));
-		drawing.setBindGroup(0, device.createBindGroup({ layout: pipelines.get(entryPoint).getBindGroupLayout(0), entries }));
-		drawing.draw(3);
-		drawing.end();
+		const work = compute ? encoder.beginComputePass() : encoder.beginRenderPass({ colorAttachments: [{ view, loadOp: 'clear', storeOp: 'store' }] });
+		work.setPipeline(pipelines.get(entryPoint));
+		work.setBindGroup(0, device.createBindGroup({ layout: pipelines.get(entryPoint).getBindGroupLayout(0), entries }));
+		if (compute) work.dispatchWorkgroups(Math.ceil(picture.width / 8), Math.ceil(picture.height / 8));
+		else work.draw(3);
+		work.end();
 		if (whole) break;
 	}
 	return readPicture(picture, encoder);

@@ -79,4 +79,20 @@ for name in $names; do
 	[ -n "$result" ] && [ "${result##* }" = 0 ] || problem "$name: found '$result', expected no pixel beyond 1/255"
 done
 cat said
+
+# refuses PATTERN OPTIONS…
+refuses()
+{
+	checks=$((checks + 1))
+	pattern=$1
+	shift
+	"$nook" emit "$@" 2>err
+	found=$?
+	[ $found = 1 ] && grep -q -e "$pattern" err && [ "$(wc -l <err)" = 1 ] || problem "$*: exit code $found, '$(cat err)', expected 1 and '$pattern'"
+}
+refuses 'refused.glsl: found with --wgsl, expected -o FILE.wgsl' --methods slices --wgsl -o refused.glsl
+refuses '--wgsl: missing, expected one for the .wgsl file' --methods slices -o refused.wgsl
+refuses '--glsl: found with --wgsl, expected one language' --methods slices --wgsl --glsl 330 -o refused.wgsl
+refuses '--wgsl: found with --hlsl, expected one language' --methods slices --wgsl --hlsl 60 -o refused.wgsl
+refuses '--wgsl: found with --methods aov, expected a screen-space method' --methods aov --wgsl -o refused.wgsl
 finish

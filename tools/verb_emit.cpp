@@ -228,7 +228,7 @@ void checkLanguage(const EmitOptions& options)
 		refuseGiven(*options.app, {"--glsl"}, "with " + name + ", expected one language per run");
 		refuseGiven(*options.app, {"--textures"}, "with " + name + ", whose textures always are separate");
 	}
-	if (isHlsl(options) && options.wgsl)
+	if (options.hlsl && options.wgsl)
 	{
 		refuse("--wgsl: found with --hlsl, expected one language per run");
 	}
@@ -408,7 +408,10 @@ void emitVolumes(const EmitOptions& options, bool mask)
 	{
 		if (formatOf(path, kModuleFormats) == ".hlsl" || formatOf(path, kModuleFormats) == ".wgsl" || !isShader(path))
 		{
-			refuse(path + ": found " + (isScript(path) ? "a script" : "a header") +
+			refuse(path + ": found " +
+				   (isScript(path)   ? "a script"
+					: isHeader(path) ? "a header"
+									 : "another language") +
 				   ", expected a .glsl file alone: nook_volumes_draw.h fills the block");
 		}
 		files.add(path, volumesGlsl(text, {command, NOOK_VERSION, {}, {}}));

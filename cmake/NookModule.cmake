@@ -3,7 +3,7 @@
 Emits the GLSL module while the project builds, with patterns made for it, and lets a target include what it needs.
 
 	nook_add_module(TARGET NAME name METHODS vo-line|vo-point|vo-area|alchemy|statvo|slices...|aov|aov-mask
-		[COUNTS N...|PATTERNS file...] GLSL 330|430|es300|vulkan [RECIPE rays|paper|file] [TILE size] [PATTERN_OPTIONS ...]
+		[COUNTS N...|PATTERNS file...] GLSL 330|430|es300|vulkan|HLSL 60 [RECIPE rays|paper|file] [TILE size] [PATTERN_OPTIONS ...]
 		[TILE_OPTIONS ...] [OPTIONS ...] [EMBED] [SCRIPT] [OUTPUTS variable] [SAMPLES variable])
 
 TARGET           a target of this project; it is built after the files and finds them by #include "NAME.h"
@@ -13,7 +13,7 @@ METHODS          what the module offers; or alone: aov or aov-mask, the stages t
 COUNTS           samples of each method but statvo and slices, in the same order: patterns and tiles are made for them; with slices
                  counted in as well, a tile is made of that many slices in each pixel, in place of the kernel's own
 PATTERNS         or else a file for each of them, of nook pattern or nook tile
-GLSL             the module's language
+GLSL, HLSL       the module's language; with HLSL the file is NAME.hlsl
 RECIPE           where settings come from: rays where absent, paper, or a file of nook fit
 TILE             with COUNTS: side of the window in which every pixel has samples of its own; 4 where absent, 1 for none
 PATTERN_OPTIONS  with COUNTS: more options of `nook pattern`: --starts 64, --seed 3, ...
@@ -27,7 +27,7 @@ SAMPLES          variable that receives the files of the samples: PATTERNS of an
 A file is made again when its options, its patterns, its recipe or the program change, and not otherwise.
 ]]
 function(nook_add_module target)
-	set(one NAME GLSL RECIPE TILE OUTPUTS SAMPLES)
+	set(one NAME GLSL HLSL RECIPE TILE OUTPUTS SAMPLES)
 	set(many METHODS COUNTS PATTERNS PATTERN_OPTIONS TILE_OPTIONS OPTIONS)
 	cmake_parse_arguments(PARSE_ARGV 1 arg "EMBED;SCRIPT" "${one}" "${many}")
 	if(arg_UNPARSED_ARGUMENTS)
@@ -39,11 +39,17 @@ function(nook_add_module target)
 	if(NOT "${arg_NAME}" MATCHES "^[A-Za-z][A-Za-z0-9_]*$")
 		message(FATAL_ERROR "nook_add_module: NAME: found '${arg_NAME}', expected a name as C takes it")
 	endif()
-	if(NOT arg_GLSL MATCHES "^(330|430|es300|vulkan)$")
+	set(language glsl)
+	if(DEFINED arg_HLSL)
+		if(NOT arg_HLSL STREQUAL "60" OR DEFINED arg_GLSL OR arg_METHODS MATCHES "^aov")
+			message(FATAL_ERROR "nook_add_module: HLSL: found '${arg_HLSL}', expected 60, without GLSL, for other methods than volumes")
+		endif()
+		set(language hlsl)
+	elseif(NOT arg_GLSL MATCHES "^(330|430|es300|vulkan)$")
 		message(FATAL_ERROR "nook_add_module: GLSL: found '${arg_GLSL}', expected 330, 430, es300 or vulkan")
 	endif()
 	_nook_check_methods("${arg_METHODS}" "${arg_COUNTS}" "${arg_PATTERNS}" sampled)
-	_nook_check_options(nook_add_module "${arg_OPTIONS}" -o --methods --patterns --glsl --recipe)
+	_nook_check_options(nook_add_module "${arg_OPTIONS}" -o --methods --patterns --glsl --hlsl --recipe)
 	if(arg_METHODS MATCHES "^aov" AND NOT arg_GLSL MATCHES "^(330|430)$")
 		message(FATAL_ERROR "nook_add_module: GLSL: found '${arg_GLSL}', expected 330 or 430 for ${arg_METHODS}")
 	endif()
@@ -78,7 +84,7 @@ function(nook_add_module target)
 		endforeach()
 	endif()
 
-	set(glsl "${folder}/${arg_NAME}.glsl")
+	set(glsl "${folder}/${arg_NAME}.${language}")
 	set(outputs "${glsl}")
 	set(header "")
 	if(NOT arg_METHODS MATCHES "^aov")
@@ -105,13 +111,13 @@ function(nook_add_module target)
 		set(inputs --patterns "${inputs}")
 	endif()
 	_nook_make("${folder}/${arg_NAME}" "nook: ${methods} (${arg_NAME})" "${outputs}" "${read}"
-		emit --methods ${methods} ${inputs} ${recipe} --glsl ${arg_GLSL} ${arg_OPTIONS} -o "${glsl}" ${header})
+		emit --methods ${methods} ${inputs} ${recipe} --${language} ${arg_GLSL}${arg_HLSL} ${arg_OPTIONS} -o "${glsl}" ${header})
 	if(arg_EMBED)
 		set(script "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/NookEmbed.cmake")
 		add_custom_command(OUTPUT "${glsl}.h"
-			COMMAND ${CMAKE_COMMAND} "-DINPUT=${glsl}" -DNAME=${arg_NAME}_glsl "-DOUTPUT=${glsl}.h" -P "${script}"
+			COMMAND ${CMAKE_COMMAND} "-DINPUT=${glsl}" -DNAME=${arg_NAME}_${language} "-DOUTPUT=${glsl}.h" -P "${script}"
 			DEPENDS "${glsl}" "${script}"
-			COMMENT "Embedding ${arg_NAME}.glsl"
+			COMMENT "Embedding ${arg_NAME}.${language}"
 			VERBATIM)
 		list(APPEND outputs "${glsl}.h")
 	endif()

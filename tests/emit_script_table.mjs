@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cameras and settings, listed once for two languages. node emit_script_table.mjs cpp BLOCK: a C++ program that prints the result
-// of the emitted header (./m.h) for each; node emit_script_table.mjs js: the results of the emitted module (./m.js). One line each:
-// the bytes of the block, or "refused: " and the reason; then the texels of the tiles.
+// Cameras and settings, listed once for all languages. node emit_script_table.mjs cpp BLOCK, cs or py: a program that prints the result
+// of the emitted file (./m.h, m.cs, m.py) for each; node emit_script_table.mjs js: the results of the emitted module (./m.js). One
+// line each: the bytes of the block, or "refused: " and the reason; then the texels of the tiles.
 const [language, block] = process.argv.slice(2);
 
 const perspective = (x, y, near, far) => [x, 0, 0, 0, 0, y, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0];
@@ -46,6 +46,7 @@ const numbers = [
 		'second_band', 'sigma', 'beta', 'guard'].map(name => ({ [name]: -1 })),
 	{ largest_pixels: 256 }, { least_pixels: 400 }, { depth_bits: 8 }, { normal_bits: 7 }, { first_row_ndc_y: 0 }, { radius: NaN },
 ];
+const tiles = ['nook_vo_line', 'nook_vo_point', 'nook_vo_area', 'nook_alchemy'];
 const methods = { voLine: 'nook_vo_line', voPoint: 'nook_vo_point', voArea: 'nook_vo_area', alchemy: 'nook_alchemy', statVo: 'nook_statvo', slices: 'nook_slices' };
 
 const cases = [];
@@ -68,6 +69,28 @@ if (language === 'js') {
 		const { tile } = module[name];
 		if (tile) console.log(`${tile.name} ${tile.width} ${tile.height} ${hex(tile.texels.buffer)}`);
 	}
+} else if (language === 'cs') {
+	const number = value => Number.isNaN(value) ? 'double.NaN' : String(value).replace('Infinity', 'double.PositiveInfinity');
+	console.log('using System;\nusing System.Runtime.InteropServices;\nstatic class Table\n{\n'
+		+ '\tstatic string Hex(byte[] bytes)\n\t{\n\t\treturn BitConverter.ToString(bytes).Replace("-", "").ToLower();\n\t}\n'
+		+ '\tstatic void Show(double[] p, Nook.nook_settings s)\n\t{\n\t\ttry\n\t\t{\n\t\t\tvar bytes = new byte[Marshal.SizeOf(typeof(Nook.Block))];\n'
+		+ '\t\t\tvar pin = GCHandle.Alloc(bytes, GCHandleType.Pinned);\n\t\t\tMarshal.StructureToPtr(Nook.Fill(p, s), pin.AddrOfPinnedObject(), false);\n'
+		+ '\t\t\tpin.Free();\n\t\t\tConsole.WriteLine(Hex(bytes));\n\t\t}\n\t\tcatch (ArgumentException error)\n\t\t{\n'
+		+ '\t\t\tConsole.WriteLine("refused: " + error.Message);\n\t\t}\n\t}\n'
+		+ '\tstatic void Tile(string name, int width, int height, float[] texels)\n\t{\n\t\tvar bytes = new byte[4 * texels.Length];\n'
+		+ '\t\tBuffer.BlockCopy(texels, 0, bytes, 0, bytes.Length);\n\t\tConsole.WriteLine(name + " " + width + " " + height + " " + Hex(bytes));\n\t}\n'
+		+ '\tstatic void Main()\n\t{\n\t\tNook.nook_settings s;\n' + cases.map(({ name, reach, projection, settings }) =>
+			`\t\ts = ${name ? `Nook.${methods[name]}_settings(${reach})` : 'new Nook.nook_settings()'};\n`
+			+ Object.entries(settings).map(([key, value]) => `\t\ts.${key} = ${number(value)};\n`).join('')
+			+ `\t\tShow(new double[] {${projection.map(number).join(', ')}}, s);\n`).join('')
+		+ tiles.map(name => `\t\tTile("${name}_tile", Nook.${name}_tile_width, Nook.${name}_tile_height, Nook.${name}_tile);\n`).join('') + '\t}\n}');
+} else if (language === 'py') {
+	const number = value => Number.isNaN(value) ? 'math.nan' : value === true ? 'True' : value === false ? 'False' : String(value).replace('Infinity', 'math.inf');
+	console.log('import math\nimport struct\nimport m\n\ndef show(projection, settings):\n\ttry:\n\t\tprint(m.fill(projection, **settings).hex())\n'
+		+ '\texcept ValueError as error:\n\t\tprint(f"refused: {error}")\n\n' + cases.map(({ name, reach, projection, settings }) =>
+			`show([${projection.map(number).join(', ')}], {${name ? `**m.${methods[name].slice(5)}_settings(${reach}), ` : ''}`
+			+ Object.entries(settings).map(([key, value]) => `"${key}": ${number(value)}`).join(', ') + '})\n').join('')
+		+ tiles.map(name => name.slice(5)).map(name => `print("nook_${name}_tile", *m.${name}_tile_size, struct.pack(f"<{len(m.${name}_tile)}f", *m.${name}_tile).hex())\n`).join(''));
 } else {
 	const number = value => Number.isNaN(value) ? 'std::nan("")' : String(value).replace('Infinity', 'HUGE_VAL');
 	const code = ({ name, reach, projection, settings }) => `\t{\n\t\tconst double p[16] = {${projection.map(number).join(', ')}};\n`
@@ -76,6 +99,6 @@ if (language === 'js') {
 		+ `\t\t${block} b{};\n\t\tconst char* const reason = nook_fill(b, p, s);\n\t\tif (reason)\n\t\t\tstd::printf("refused: %s\\n", reason);\n\t\telse\n\t\t\thex(&b, sizeof b);\n\t}\n`;
 	console.log('#include "m.h"\n#include <cstdio>\nstatic void hex(const void* bytes, std::size_t size)\n{\n\tfor (std::size_t i = 0; i < size; ++i)\n'
 		+ '\t\tstd::printf("%02x", static_cast<const unsigned char*>(bytes)[i]);\n\tstd::printf("\\n");\n}\nint main()\n{\n' + cases.map(code).join('')
-		+ Object.values(methods).filter(name => !/statvo|slices/.test(name)).map(name => `\tstd::printf("${name}_tile %d %d ", ${name}_tile_width, `
+		+ tiles.map(name => `\tstd::printf("${name}_tile %d %d ", ${name}_tile_width, `
 			+ `${name}_tile_height);\n\thex(${name}_tile, sizeof ${name}_tile);\n`).join('') + '}');
 }

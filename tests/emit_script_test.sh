@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: emit_script_test.sh PROGRAM. nook emit -o FILE.js: its blocks and texels equal the header's, byte for byte, over a table of
-# cameras and settings; its errors; its GLSL equals the file's. Exit code 77: no Node.js or compiler.
+# Usage: emit_script_test.sh PROGRAM. nook emit -o FILE.js, .py and .cs: blocks and texels equal the header's, byte for byte, over a
+# table of cameras and settings; errors; -o FILE.json has the same offsets and texels; the script's GLSL equals the file's. Exit code 77:
+# no Node.js or compiler. C# needs Debian's mono-mcs.
 set -u
 nook=$(realpath "$1")
 here=$(cd "$(dirname "$0")" && pwd)
@@ -20,12 +21,26 @@ done
 for block in "mixed nook_block" "floats nook_float_block"; do
 	checks=$((checks + 1))
 	"$nook" emit --methods vo-line,vo-point,vo-area,alchemy,statvo,slices --patterns tile.json,ball_tile.json,tile.json,hemisphere_tile.json \
-		--block ${block% *} --filter bilateral --glsl es300 -o m.glsl -o m.h -o m.js || problem "$block: not emitted"
+		--block ${block% *} --filter bilateral --glsl es300 -o m.glsl -o m.h -o m.js -o m.py -o m.cs -o m.json || problem "$block: not emitted"
 	node "$here/emit_script_table.mjs" cpp ${block#* } >table.cpp
 	c++ -std=c++17 -ffp-contract=off -Wall -Wextra -Wpedantic -Werror -o table table.cpp >log 2>&1 || problem "$block: $(head -n 5 log)"
 	./table >of_header
 	node "$here/emit_script_table.mjs" js >of_script 2>faults || problem "$block: $(head -n 5 faults)"
 	same of_header of_script "$block: expected the header's bytes, found others from line $(cmp of_header of_script | sed 's/.*line //')"
+	node "$here/emit_script_table.mjs" py >table.py
+	python3 table.py >of_python 2>faults || problem "$block: $(tail -n 5 faults)"
+	same of_header of_python "$block: Python: expected the header's bytes, found others from line $(cmp of_header of_python | sed 's/.*line //')"
+	if command -v mcs >/dev/null && command -v mono >/dev/null; then
+		node "$here/emit_script_table.mjs" cs >table.cs
+		mcs -warnaserror -out:table.exe table.cs m.cs >log 2>&1 && mono table.exe >of_sharp 2>faults || problem "$block: $(head -n 5 log faults)"
+		same of_header of_sharp "$block: C#: expected the header's bytes, found others from line $(cmp of_header of_sharp | sed 's/.*line //')"
+	fi
+	printf 'import { readFileSync } from "node:fs";\nimport * as script from "./m.js";\nconst json = JSON.parse(readFileSync("m.json"));\n%s\n%s\n%s\n%s\n' \
+		'const same = (a, b) => JSON.stringify(a) === JSON.stringify(b) || (console.log(a, b), process.exit(1));' \
+		'same(json.block.members.map(({ name, type, offset }) => ({ name, type, offset })), script.members);' \
+		'same(json.methods.filter(one => one.tile).map(one => json.block.bytes + one.tile.texels.map(Math.fround).join()), ["voLine", "voPoint", "voArea", "alchemy"].map(name => script.blockBytes + script[name].tile.texels.join()));' \
+		'same(json.methods.map(one => Object.entries(one.settings).map(([name, value]) => [name, value.times_reach * 2 || value])), ["voLine", "voPoint", "voArea", "alchemy", "statVo", "slices"].map(name => Object.entries(script[name].settings(2))));' >json.mjs
+	node json.mjs >faults || problem "$block: m.json: $(head -c 500 faults)"
 	for reason in 'looks left-handed: w = +z' 'looks left-handed: near and far' 'looks row-major: transpose it' 'found infinity or NaN' 'found a skew' \
 		'found 0 for the scale' 'found a z that depends on x or y' 'settings: radius:' 'settings: largest_pixels:'; do
 		grep -q "^refused: .*$reason" of_script || problem "$block: found no '$reason' among $(grep refused of_script | sort | uniq -c)"

@@ -28,7 +28,7 @@ grep -q 'vec4 nook_vo_line_samples\[7\]' m.glsl || problem "--counts 7: not seve
 works '' tile --pattern kept_disk.json --size 2 --starts 1 --progressive -o kept_ordered.json
 works '' emit --methods vo-line --patterns kept_ordered.json --tile array --counts 3 --bands 2 --glsl 430 -o m.glsl
 grep -q 'vec4 nook_vo_line_samples\[12\]' m.glsl || problem "--counts 3: not three samples in each of four variants"
-works '#version 300 es' emit --methods vo-line --patterns kept_tile.json --tile array --use-normal no --main --glsl es300 -o -
+works '#version 300 es' emit --methods vo-line --patterns kept_tile.json --tile array --use-normal no --main fragment --glsl es300 -o -
 works '' emit --methods vo-line --patterns kept_tile.json -o m.h
 grep -q 'nook_vo_line_tile\[20\]' m.h || problem "the header has no texels"
 there m.glsl m.h
@@ -91,7 +91,7 @@ there m.glsl
 works '' emit --methods vo-line --patterns kept_tile.json --namespace low -o m.h
 grep -q '^namespace low$' m.h && grep -q -- '--namespace low' m.h || problem "no namespace"
 there m.h
-fails 1 '--namespace: found without a .h file' emit --methods vo-line --patterns kept_tile.json --namespace low --glsl 330 -o m.glsl
+fails 1 '--namespace: found without a .h or .cs file' emit --methods vo-line --patterns kept_tile.json --namespace low --glsl 330 -o m.glsl
 fails 1 '--namespace: found .9low' emit --methods vo-line --patterns kept_tile.json --namespace 9low -o m.h
 fails 1 '--namespace: found' emit --methods vo-line --patterns kept_tile.json --namespace '' -o m.h
 fails 1 '--namespace' emit --methods aov --namespace low --glsl 330 -o m.glsl
@@ -99,7 +99,28 @@ fails 1 '--layers:.*expected statvo' emit --methods vo-line --patterns kept_tile
 fails 1 '--taps:' emit --methods vo-line --patterns kept_tile.json --taps 7 --glsl 330 -o m.glsl
 fails 3 'sample 0: found no other .*--paired' emit --methods vo-line --patterns kept_disk.json --paired --glsl 330 -o m.glsl
 fails 3 'kept_tile.json: found samples in any order, expected for bands' emit --methods vo-line --patterns kept_tile.json --bands 2 --glsl 330 -o m.glsl
-fails 1 '--main:' emit --methods vo-line --patterns kept_tile.json --filter window --main --glsl 330 -o m.glsl
+works '' emit --methods vo-line --patterns kept_tile.json --filter window --main fragment --glsl 330 -o m.glsl
+grep -q '^#elif NOOK_PASS == 1$' m.glsl || problem "--main fragment with a filter: found no second pass"
+there m.glsl
+works '' emit --methods statvo,vo-point --patterns kept_ball.json --hlsl 60 --filter bilateral -o m.hlsl -o m.h -o m.cs -o m.py -o m.json
+grep -q 'vec[234]' m.hlsl && problem "HLSL: found $(grep -m 1 'vec[234]' m.hlsl)"
+there m.cs m.h m.hlsl m.json m.py
+works '' emit --methods vo-line --patterns kept_tile.json --namespace low -o m.cs
+grep -q '^namespace low$' m.cs || problem "no namespace in C#"
+there m.cs
+fails 1 '--main compute: found --glsl 330, which has no compute shaders' emit --methods slices --main compute --glsl 330 -o m.glsl
+fails 1 '--main: found with --gather' emit --methods slices --main fragment --gather --glsl 330 -o m.glsl
+fails 1 "--main: found 'vertex', expected fragment or compute" emit --methods slices --main vertex --glsl 330 -o m.glsl
+fails 1 '--textures separate: found --glsl 430, expected --glsl vulkan' emit --methods slices --textures separate --glsl 430 -o m.glsl
+fails 1 '--textures: found with --hlsl' emit --methods slices --textures macros --hlsl 60 -o m.hlsl
+fails 1 '--glsl: found with --hlsl' emit --methods slices --glsl 330 --hlsl 60 -o m.glsl
+fails 1 '--hlsl: missing' emit --methods slices -o m.hlsl
+fails 1 'm.hlsl: found with --glsl, expected -o FILE.glsl' emit --methods slices --glsl 330 -o m.hlsl
+fails 1 'm.glsl: found with --hlsl, expected -o FILE.hlsl' emit --methods slices --hlsl 60 -o m.glsl
+fails 1 '--hlsl: found without a .glsl' emit --methods slices --hlsl 60 -o m.cs
+fails 1 "--hlsl: found '50', expected 60" emit --methods slices --hlsl 50 -o m.hlsl
+fails 1 '--hlsl: found with --methods aov' emit --methods aov --hlsl 60 -o m.hlsl
+fails 1 'm.py: found' emit --methods aov --glsl 330 -o m.py
 fails 3 '--filter window: vo-line: found 1 variants' emit --methods vo-line --patterns kept_disk.json --filter window --glsl 330 -o m.glsl
 works '' emit --methods slices --filter window --glsl 330 -o m.glsl
 there m.glsl
@@ -113,11 +134,11 @@ fails 1 '--glsl: missing' emit --methods vo-line --patterns kept_disk.json -o m.
 fails 1 '--glsl: found without' emit --methods vo-line --patterns kept_disk.json --glsl 330 -o m.h
 fails 1 '--cut:' emit --methods vo-line --patterns kept_disk.json --cut --glsl 330 -o m.glsl
 fails 1 '--use-normal:' emit --methods alchemy --patterns kept_up.json --use-normal no --glsl 330 -o m.glsl
-fails 1 '--main:.*one method' emit --methods vo-line,alchemy --patterns kept_disk.json,kept_up.json --main --glsl 330 -o m.glsl
+fails 1 '--main:.*one method' emit --methods vo-line,alchemy --patterns kept_disk.json,kept_up.json --main fragment --glsl 330 -o m.glsl
 fails 1 '--tile:' emit --methods vo-line --patterns kept_disk.json --tile array --glsl 330 -o m.glsl
 fails 1 '--counts:.*as many' emit --methods vo-line --patterns kept_order.json --counts 3,4 --glsl 330 -o m.glsl
 fails 1 '--counts:' emit --methods vo-line --patterns kept_order.json --counts 0 --glsl 330 -o m.glsl
-fails 1 '.*m.hlsl: found the ending' emit --methods vo-line --patterns kept_disk.json --glsl 330 -o m.hlsl
+fails 1 '.*m.txt: found the ending' emit --methods vo-line --patterns kept_disk.json --glsl 330 -o m.txt
 fails 1 'kept_disk.json: named twice' emit --methods vo-line --patterns kept_disk.json --glsl 330 -o m.glsl --json kept_disk.json
 fails 2 'closed/none/m.glsl' emit --methods vo-line --patterns kept_disk.json --glsl 330 -o closed/none/m.glsl
 fails 2 'missing.json' emit --methods vo-line --patterns missing.json --glsl 330 -o m.glsl

@@ -44,7 +44,7 @@ fails 1 '--frame: found without a tile' shade kept_g.exr --method vo-line --fram
 fails 1 '--frame: found without a tile' shade kept_g.exr --method slices --frame 1 -o a.exr
 fails 3 'kept_four.json: frames: found one, expected several for --frame' shade kept_g.exr --method vo-line --pattern kept_four.json --frame 1 -o a.exr
 fails 1 "--frame: found '-1'" shade kept_g.exr --method vo-line --pattern kept_frames.json --frame -1 -o a.exr
-works '' emit --methods vo-line --patterns kept_frames.json --glsl vulkan --main -o a.glsl -o a.h -o a.js
+works '' emit --methods vo-line --patterns kept_frames.json --glsl vulkan --main fragment -o a.glsl -o a.h -o a.js
 if command -v glslangValidator >/dev/null; then
 	checks=$((checks + 1))
 	glslangValidator -S frag -V a.glsl -o a.spv >../stdout 2>&1 || problem "a module of several frames: found '$(cat ../stdout)', expected SPIR-V"
@@ -166,7 +166,7 @@ fails 1 '--bent: found with another method, expected --method slices' shade kept
 fails 1 '--bent: found with --resolution' shade kept_g.exr --method slices --bent --resolution half -o v.exr
 fails 1 '--bent: found with --filter window' shade kept_g.exr --method slices --bent --filter window -o v.exr
 fails 1 '--bent: found with --debug' shade kept_g.exr --method slices --bent --debug edges -o v.exr
-works '' emit --methods slices --bent --glsl vulkan --main -o a.glsl -o a.h -o a.js
+works '' emit --methods slices --bent --glsl vulkan --main fragment -o a.glsl -o a.h -o a.js
 if command -v glslangValidator >/dev/null; then
 	checks=$((checks + 1))
 	glslangValidator -S frag -V a.glsl -o a.spv >../stdout 2>&1 || problem "a module of bent normals: found '$(cat ../stdout)', expected SPIR-V"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Emitted GLSL modules: every combination compiles, and in a foreign shader on Mesa they draw what the kernels draw on the CPU; the
 // emitted header fills the block as our own code does.
-#include "emit_samples.h"
 #include "other_tools.h"
 #include "picture_errors.h"
+#include "small_modules.h"
 #include "small_views.h"
 #include "temporary_folder.h"
 
@@ -14,8 +14,6 @@
 #include "methods/kernel_text.h"
 #include "shade/gl_context.h"
 #include "shade/shade.h"
-
-#include "nook_vo9.h"
 
 #include <catch2/catch.hpp>
 
@@ -269,6 +267,98 @@ TEST_CASE("module: the emitted header fills the block as our own code does", "[e
 	CHECK((theirs.beta == ours.beta && theirs.epsilon == ours.epsilon));
 }
 
+namespace
+{
+
+// A camera as an engine holds it: 90 degrees high, twice as wide, near 0.1. The table in docs/reference/modules.md says what to
+// pass.
+struct EngineCamera
+{
+	const char* engines;
+	double projection[16]; // in the engine's memory
+	bool rows;             // memory holds rows of a matrix for column vectors
+	bool left_handed;
+	bool zero_to_one;
+	int first_row_ndc_y;
+};
+
+constexpr double kNearShare = 0.1 / (0.1 - 100.0); // near / (near - far) with far = 100
+const EngineCamera kEngineCameras[] = {
+	{"Direct3D, bgfx with z from 0 to 1",
+	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 - kNearShare, 1, 0, 0, 100 * kNearShare, 0},
+	 false,
+	 true,
+	 true,
+	 1},
+	{"Unity, camera.projectionMatrix",
+	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2 * kNearShare - 1, -1, 0, 0, 200 * kNearShare, 0},
+	 false,
+	 false,
+	 false,
+	 -1},
+	{"Unity, GL.GetGPUProjectionMatrix",
+	 {0.5, 0, 0, 0, 0, -1, 0, 0, 0, 0, -kNearShare, -1, 0, 0, -100 * kNearShare, 0},
+	 false,
+	 false,
+	 true,
+	 1},
+	{"Unreal: reversed, infinite", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0.1, 0}, false, true, true, 1},
+	{"Godot 4.3: reversed", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, -kNearShare, -1, 0, 0, -100 * kNearShare, 0}, false, false, true, 1},
+	{"three.js", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2 * kNearShare - 1, -1, 0, 0, 200 * kNearShare, 0}, false, false, false, -1},
+	{"Babylon.js, left-handed",
+	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 - 2 * kNearShare, 1, 0, 0, 200 * kNearShare, 0},
+	 false,
+	 true,
+	 false,
+	 -1},
+	{"OGRE: rows", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2 * kNearShare - 1, 200 * kNearShare, 0, 0, -1, 0}, true, false, false, -1},
+	{"Filament: reversed, infinite", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0}, false, false, true, 1},
+};
+
+} // namespace
+
+TEST_CASE("module: cameras of every convention give the rays and depths of one", "[emit]")
+{
+	for (const EngineCamera& engine : kEngineCameras)
+	{
+		CAPTURE(engine.engines);
+		double passed[16];
+		for (int i = 0; i < 16; ++i)
+		{
+			const double value = engine.projection[engine.rows ? i % 4 * 4 + i / 4 : i];
+			passed[i] = engine.left_handed && i >= 8 && i < 12 ? -value : value;
+		}
+		nook_settings settings;
+		settings.width = 640;
+		settings.height = 320;
+		settings.device_depth = true;
+		settings.zero_to_one = engine.zero_to_one;
+		settings.first_row_ndc_y = engine.first_row_ndc_y;
+		nook_block block{};
+		REQUIRE(nook_fill(block, passed, settings) == nullptr);
+		CHECK(block.across_x[0] == 2.0F);
+		const bool rows_from_top = engine.projection[5] * engine.first_row_ndc_y > 0.0;
+		CHECK(block.across_y[0] == (rows_from_top ? 1.0F : -1.0F)); // NDC y upward, negated for rows from the bottom
+		for (const double depth : {0.2, 1.0, 10.0, 90.0})
+		{
+			const double z = engine.left_handed ? depth : -depth; // in the engine's own view space and memory
+			const auto row = [&](int i)
+			{
+				return engine.rows ? engine.projection[4 * i + 2] * z + engine.projection[4 * i + 3]
+								   : engine.projection[8 + i] * z + engine.projection[12 + i];
+			};
+			const double ndc = row(2) / row(3);
+			const double t = std::fabs((engine.zero_to_one ? ndc : 0.5 * ndc + 0.5) - block.far_end);
+			const double linear = (block.depth[0] + block.depth[1] * t) / (block.depth[2] + block.depth[3] * t);
+			CHECK(linear == Approx(depth).epsilon(1e-4));
+		}
+		if (engine.left_handed || engine.rows) // as it is in memory, it is refused
+		{
+			CHECK(nook_fill(block, engine.projection, settings) != nullptr);
+		}
+	}
+}
+
 TEST_CASE("module: the header compiles as C++17 without a warning", "[emit]")
 {
 	const TemporaryFolder folder;
@@ -318,14 +408,7 @@ std::vector<glm::vec4> fourOf(const std::vector<glm::vec3>& normals)
 
 std::vector<glm::vec4> tileOf(const ModuleMethod& method)
 {
-	std::vector<glm::vec4> texels; // column = variant, row = sample
-	const ShadeSamples samples = samplesOf(method.method, method.variants);
-	for (std::size_t i = 0; i < samples.samples.size(); ++i)
-	{
-		const std::size_t variant = i % method.variants.size();
-		texels.push_back(samples.samples[variant * static_cast<std::size_t>(samples.count) + i / method.variants.size()]);
-	}
-	return texels;
+	return tileTexels(samplesOf(method.method, method.variants));
 }
 
 nook_block blockFor(const GBuffer& gbuffer, double radius)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Emitted modules with several passes: an engine that follows their list of passes draws what nook shade draws on the CPU.
-#include "emit_samples.h"
 #include "other_tools.h"
 #include "picture_errors.h"
+#include "small_modules.h"
 #include "small_views.h"
 #include "temporary_folder.h"
 
@@ -15,8 +15,6 @@
 #include "pattern/tile.h"
 #include "shade/gl_context.h"
 #include "shade/shade.h"
-
-#include "nook_vo9.h"
 
 #include <epoxy/gl.h>
 
@@ -40,122 +38,6 @@ constexpr std::array<const char*, 4> kVersionLines{"#version 330 core\n", "#vers
 constexpr std::array<const char*, 3> kTypes{"float", "vec4", "uvec4"};
 constexpr std::array<const char*, 5> kSlots{"nook_cells", "nook_packed", "nook_levels", "nook_tables", "nook_range"};
 
-struct PassCase
-{
-	const char* name;
-	ShadeSettings shade;
-};
-
-std::vector<PassCase> passCases()
-{
-	std::vector<PassCase> all(10);
-	all[0].name = "vo-line, bilateral, half";
-	all[0].shade.filter = ShadeFilter::bilateral;
-	all[0].shade.half_resolution = true;
-	all[1].name = "vo-area, two radii, thick";
-	all[1].shade.method = ShadeMethod::vo_area;
-	all[1].shade.volume.radii = TwoRadii::minimum;
-	all[1].shade.volume.second_radius_m = 0.3;
-	all[1].shade.volume.thickness_m = 0.4;
-	all[2].name = "vo-area, window, half, quadratic";
-	all[2].shade.method = ShadeMethod::vo_area;
-	all[2].shade.filter = ShadeFilter::window;
-	all[2].shade.half_resolution = true;
-	all[2].shade.volume.quadratic = true;
-	all[3].name = "statvo, four layers";
-	all[3].shade.method = ShadeMethod::statvo;
-	all[4].name = "statvo, one layer, half tables, quadrants, bilateral 7";
-	all[4].shade.method = ShadeMethod::statvo;
-	all[4].shade.statvo.layers = 1;
-	all[4].shade.statvo.cell_px = 2;
-	all[4].shade.statvo.quadrants = true;
-	all[4].shade.filter = ShadeFilter::bilateral;
-	all[4].shade.filter_taps = 7;
-	all[5].name = "alchemy, bands, bilateral";
-	all[5].shade.method = ShadeMethod::alchemy;
-	all[5].shade.bands = {3, 8.0, 20.0};
-	all[5].shade.filter = ShadeFilter::bilateral;
-	all[6].name = "vo-line, without normals, window";
-	all[6].shade.use_normal = false;
-	all[6].shade.filter = ShadeFilter::window;
-	all[7].name = "alchemy, coarser depths";
-	all[7].shade.method = ShadeMethod::alchemy;
-	all[7].shade.depth_levels = 3;
-	all[8].name = "slices, two of three steps, bilateral, half";
-	all[8].shade.method = ShadeMethod::slices;
-	all[8].shade.slices = {2, 3};
-	all[8].shade.filter = ShadeFilter::bilateral;
-	all[8].shade.half_resolution = true;
-	all[9].name = "vo-line, three radii, strength and power, bilateral, half";
-	all[9].shade.volume = {0.4, 0.2, 0.1, TwoRadii::product, 0.3, 0.1};
-	all[9].shade.strength = 0.7;
-	all[9].shade.power = 1.6;
-	all[9].shade.filter = ShadeFilter::bilateral;
-	all[9].shade.half_resolution = true;
-	for (PassCase& one : all)
-	{
-		one.shade.radius_m = 0.8;
-	}
-	return all;
-}
-
-ModuleSettings moduleOf(const PassCase& one, GlslTarget target)
-{
-	ModuleSettings settings;
-	settings.target = target;
-	settings.shade = one.shade;
-	ModuleMethod method{one.shade.method, {}};
-	if (takesPattern(one.shade.method))
-	{
-		method.variants = scatteredTile(domainOf(one.shade.method), 4, 6, false).variants;
-	}
-	settings.methods = {method};
-	return settings;
-}
-
-ShadeSamples samplesFor(const ModuleSettings& settings)
-{
-	const ModuleMethod& method = settings.methods.front();
-	return method.variants.empty() ? ownSamples(settings.shade) : samplesOf(method.method, method.variants, layersOf(method));
-}
-
-nook_block blockFor(const GBuffer& gbuffer, const ShadeSettings& shade, int first_row_ndc_y, int frame)
-{
-	nook_settings settings;
-	settings.width = gbuffer.width_px;
-	settings.height = gbuffer.height_px;
-	settings.first_row_ndc_y = first_row_ndc_y;
-	settings.radius = shade.radius_m;
-	settings.second_radius = shade.volume.second_radius_m;
-	settings.third_radius = shade.volume.third_radius_m;
-	settings.thickness = shade.volume.thickness_m;
-	settings.second_thickness = shade.volume.second_thickness_m;
-	settings.third_thickness = shade.volume.third_thickness_m;
-	settings.strength = shade.strength;
-	settings.power = shade.power;
-	settings.frame = frame;
-	settings.first_band = shade.bands.first_px;
-	settings.second_band = shade.bands.second_px;
-	double numbers[16];
-	std::memcpy(numbers, &gbuffer.view.projection, sizeof numbers);
-	nook_block block{};
-	REQUIRE(nook_fill(block, numbers, settings) == nullptr);
-	return block;
-}
-
-// The block's bytes as declared in the module.
-std::vector<float> bytesFor(const nook_block& block, bool floats)
-{
-	std::vector<float> numbers(sizeof block / 4);
-	std::memcpy(numbers.data(), &block, sizeof block);
-	for (std::size_t i = 0; floats && i < 2; ++i)
-	{
-		numbers[offsetof(nook_block, first) / 4 + i] = static_cast<float>(block.first[i]);
-		numbers[offsetof(nook_block, last) / 4 + i] = static_cast<float>(block.last[i]);
-	}
-	return numbers;
-}
-
 // Requires the program that was bound last to be in use.
 void setPass(GlPass& program, const glm::ivec4& values, bool floats)
 {
@@ -170,16 +52,6 @@ void setPass(GlPass& program, const glm::ivec4& values, bool floats)
 	glUniform4f(glGetUniformLocation(static_cast<GLuint>(current), "nook_pass"), numbers.x, numbers.y, numbers.z, numbers.w);
 }
 
-// The call at a texel, as listed in the module's introduction.
-std::string callOf(const ShadePass& pass, const std::string& entry, bool half)
-{
-	if (pass.fills)
-	{
-		return entry + "Full(at)";
-	}
-	return moduleCallOf(pass) + (pass.of_pixel && half && pass.packing == ShadePacking::none ? "(2 * at)" : "(at)");
-}
-
 std::string shaderOf(const ModuleSettings& settings, const std::string& module, PictureFormat format, const std::string& call)
 {
 	return std::string(kVersionLines[static_cast<std::size_t>(settings.target)]) + module + "layout(location = 0) out highp " +
@@ -189,14 +61,8 @@ std::string shaderOf(const ModuleSettings& settings, const std::string& module, 
 
 std::unique_ptr<GlTexture> tileOf(const ShadeSamples& samples)
 {
-	std::vector<glm::vec4> texels(samples.samples.size()); // column = variant, row = sample
-	const auto count = static_cast<std::size_t>(samples.count);
-	const std::size_t variants = texels.size() / count;
-	for (std::size_t i = 0; i < texels.size(); ++i)
-	{
-		texels[i] = samples.samples[i % variants * count + i / variants];
-	}
-	return std::make_unique<GlTexture>(static_cast<int>(variants), samples.count, 4, &texels[0].x);
+	const std::vector<glm::vec4> texels = tileTexels(samples);
+	return std::make_unique<GlTexture>(static_cast<int>(texels.size()) / samples.count, samples.count, 4, &texels[0].x);
 }
 
 // The module with a counter of its depth reads, including reads of coarser levels if `levels` hold depth.
@@ -219,7 +85,7 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 	const std::string module = moduleGlsl(settings, contextOf("nook emit"));
 	const ShadeSamples samples = samplesFor(settings);
 	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings.shade, false);
-	const std::vector<float> block = bytesFor(blockFor(gbuffer, settings.shade, first_row_ndc_y, frame), settings.float_block);
+	const std::vector<float> block = bytesFor(passBlockFor(gbuffer, settings.shade, first_row_ndc_y, frame), settings.float_block);
 	std::vector<glm::vec4> four;
 	for (const glm::vec3& normal : gbuffer.normals)
 	{
@@ -234,6 +100,7 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 		pictures.push_back(std::make_unique<GlTexture>(shape));
 	}
 	std::string entry;
+	std::vector<std::string> calls;
 	std::vector<ShadeRead> upsampled;
 	for (const ShadePass& pass : plan.passes)
 	{
@@ -244,7 +111,7 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 		}
 		entry = pass.of_pixel ? pass.kernel.call : entry;
 		const PictureFormat format = plan.pictures[pass.picture].format;
-		const std::string call = callOf(pass, entry, settings.shade.half_resolution);
+		const std::string call = passCallOf(pass, entry, settings.shade.half_resolution);
 		const auto draw = [&](GlPass& program, const GlTexture& picture, int level, int layer)
 		{
 			program.bind("nook_normals", normals);
@@ -280,7 +147,8 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 			int& most = (*counts)[pass.fills ? entry + "Full" : moduleCallOf(pass)];
 			most = std::max(most, static_cast<int>(*std::max_element(reads.begin(), reads.end())));
 		}
-		GlPass program(shaderOf(settings, module, format, call));
+		GlPass program(settings.main ? withDefinitions(module, "#define NOOK_PASS " + passNumber(calls, call) + "\n")
+									 : shaderOf(settings, module, format, call));
 		draw(program, *pictures[pass.picture], pass.level, pass.layer);
 	}
 	const GlTexture& last = *pictures[plan.passes.back().picture];
@@ -434,6 +302,82 @@ TEST_CASE("module: passes drawn as the module's head says make the picture of no
 			CAPTURE(one.name, static_cast<int>(target), context.renderer());
 			checkSamePicture(cpu, gl);
 		}
+	}
+}
+
+TEST_CASE("module: whole shaders draw the picture of nook shade", "[emit]")
+{
+	const GBuffer gbuffer = builtinView("courtyard", 128, 72);
+	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
+	{
+		const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
+		for (const PassCase& one : passCases())
+		{
+			ModuleSettings settings = moduleOf(one, target);
+			settings.main = ModuleMain::fragment;
+			settings.textures = target == GlslTarget::gl430 ? ModuleTextures::macros : ModuleTextures::fixed;
+			const std::vector<float> cpu = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility;
+			CAPTURE(one.name, static_cast<int>(target), context.renderer());
+			checkSamePicture(cpu, drawn(gbuffer, settings));
+		}
+	}
+}
+
+TEST_CASE("module: a compute shader's bindings are where its text puts them", "[emit]")
+{
+	const GBuffer gbuffer = builtinView("courtyard", 129, 75); // no multiple of a group
+	const GlContext context;
+	if (!context.hasCompute())
+	{
+		WARN("no compute shaders in " << context.renderer());
+		return;
+	}
+	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy, ShadeMethod::slices})
+	{
+		PassCase one{"", {}};
+		one.shade.method = method;
+		one.shade.radius_m = 0.8;
+		ModuleSettings settings = moduleOf(one, GlslTarget::gl430);
+		settings.main = ModuleMain::compute;
+		settings.tile = TilePlace::array;
+		const std::string text = withDefinitions(moduleGlsl(settings, contextOf("nook emit")), "#define NOOK_OUT_FORMAT r32f\n");
+		const GLuint shader = glCreateShader(GL_COMPUTE_SHADER);
+		const char* const source = text.c_str();
+		glShaderSource(shader, 1, &source, nullptr);
+		glCompileShader(shader);
+		const GLuint program = glCreateProgram();
+		glAttachShader(program, shader);
+		glLinkProgram(program);
+		GLint linked = 0;
+		glGetProgramiv(program, GL_LINK_STATUS, &linked);
+		REQUIRE(linked == GL_TRUE);
+		glUseProgram(program);
+		const std::vector<float> block = bytesFor(passBlockFor(gbuffer, settings.shade, 1, 0), false);
+		GLuint buffer = 0;
+		glGenBuffers(1, &buffer);
+		glBindBufferBase(GL_UNIFORM_BUFFER, 0, buffer);
+		glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(block.size() * 4), block.data(), GL_STATIC_DRAW);
+		std::vector<glm::vec4> four;
+		for (const glm::vec3& normal : gbuffer.normals)
+		{
+			four.emplace_back(normal, 0.0F);
+		}
+		const GlTexture depths(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data());
+		const GlTexture normals(gbuffer.width_px, gbuffer.height_px, 4, &four[0].x);
+		const GlTexture picture(PictureShape{PictureFormat::scalar, gbuffer.width_px, gbuffer.height_px});
+		glActiveTexture(GL_TEXTURE1);
+		glBindTexture(GL_TEXTURE_2D, depths.name());
+		glActiveTexture(GL_TEXTURE2);
+		glBindTexture(GL_TEXTURE_2D, normals.name());
+		glBindImageTexture(0, picture.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+		glDispatchCompute((129 + 7) / 8, (75 + 7) / 8, 1);
+		glMemoryBarrier(GL_ALL_BARRIER_BITS);
+		CAPTURE(static_cast<int>(method), context.renderer());
+		REQUIRE(glGetError() == GL_NO_ERROR);
+		checkSamePicture(shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility, readScalar(picture));
+		glDeleteBuffers(1, &buffer);
+		glDeleteProgram(program);
+		glDeleteShader(shader);
 	}
 }
 
@@ -663,7 +607,7 @@ TEST_CASE("module: passes compile for every target, and for Vulkan", "[emit]")
 				for (const ShadePass& pass : plan.passes)
 				{
 					entry = pass.of_pixel ? pass.kernel.call : entry;
-					calls += " + vec4(" + callOf(pass, entry, settings.shade.half_resolution) + ")";
+					calls += " + vec4(" + passCallOf(pass, entry, settings.shade.half_resolution) + ")";
 				}
 				writeFile(folder / "m.frag", shaderOf(settings, module, PictureFormat::quad, calls));
 				const bool vulkan = target == GlslTarget::vulkan;

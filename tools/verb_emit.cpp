@@ -19,7 +19,7 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 5> kModuleFormats{".glsl", ".hlsl", ".wgsl", ".h", ".js"};
+constexpr std::array<std::string_view, 8> kModuleFormats{".glsl", ".hlsl", ".wgsl", ".h", ".js", ".cs", ".py", ".json"};
 constexpr std::array<std::string_view, 2> kModuleNormals{"texture", "from-depth"};
 constexpr std::array<std::string_view, 2> kModuleBlocks{"mixed", "floats"};
 constexpr std::array<std::string_view, 2> kModuleMains{"fragment", "compute"};
@@ -45,6 +45,13 @@ struct EmitOptions
 	}
 };
 
+std::string targetName(GlslTarget target)
+{
+	return target == GlslTarget::wgsl ? ""
+									  : std::string(target == GlslTarget::hlsl60 ? hlslTargets().front()
+																				 : glslTargets()[static_cast<std::size_t>(target)]);
+}
+
 bool isHlsl(const EmitOptions& options)
 {
 	return options.settings.target == GlslTarget::hlsl60;
@@ -62,7 +69,7 @@ bool hasLanguage(const EmitOptions& options)
 bool isShader(const std::string& path)
 {
 	const std::string_view format = formatOf(path, kModuleFormats);
-	return format != ".h" && format != ".js";
+	return format == ".glsl" || format == ".hlsl" || format == ".wgsl" || path == "-";
 }
 
 bool isScript(const std::string& path)
@@ -70,9 +77,10 @@ bool isScript(const std::string& path)
 	return formatOf(path, kModuleFormats) == ".js";
 }
 
-bool isHeader(const std::string& path)
+// Does the file have names of its own in a program?
+bool hasNamespace(const std::string& path)
 {
-	return formatOf(path, kModuleFormats) == ".h";
+	return formatOf(path, kModuleFormats) == ".h" || formatOf(path, kModuleFormats) == ".cs";
 }
 
 bool isModule(const MethodRow& row)
@@ -237,22 +245,22 @@ void checkLanguage(const EmitOptions& options)
 		const std::string_view format = formatOf(path, kModuleFormats);
 		if (isShader(path) && !hasLanguage(options))
 		{
-			const std::string missing(format.empty() ? "glsl" : format.substr(1));
+			const std::string missing(path == "-" ? "glsl" : format.substr(1));
 			refuse("--" + missing + ": missing, expected one for the ." + missing + " file");
 		}
-		if (isShader(path) && !format.empty() && format.substr(1) != name.substr(2))
+		if (isShader(path) && path != "-" && format.substr(1) != name.substr(2))
 		{
 			refuse(path + ": found with " + name + ", expected -o FILE." + name.substr(2));
 		}
 	}
-	const std::string target = name == "--glsl" ? std::string(glslTargets()[static_cast<std::size_t>(settings.target)]) : "";
+	const std::string found = ": found --glsl " + targetName(settings.target);
 	if (settings.main == ModuleMain::compute && !hasCompute(settings.target))
 	{
-		refuse("--main compute: found --glsl " + target + ", which has no compute shaders, expected --glsl 430, vulkan or --hlsl");
+		refuse("--main compute" + found + ", which has no compute shaders, expected --glsl 430, vulkan or --hlsl");
 	}
 	if (settings.textures == ModuleTextures::separate && settings.target != GlslTarget::vulkan)
 	{
-		refuse("--textures separate: found --glsl " + target + ", expected --glsl vulkan");
+		refuse("--textures separate" + found + ", expected --glsl vulkan");
 	}
 }
 
@@ -277,12 +285,12 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	{
 		refuseValue("--namespace", space, "letters, digits and single underscores, a letter first");
 	}
-	if (std::none_of(files.begin(), files.end(), isHeader))
+	if (std::none_of(files.begin(), files.end(), hasNamespace))
 	{
-		refuseGiven(*options.app, {"--namespace"}, "without a .h file, expected -o FILE.h as well");
+		refuseGiven(*options.app, {"--namespace"}, "without a .h or .cs file, expected -o FILE.h as well");
 	}
 	const bool module = std::any_of(files.begin(), files.end(), isShader);
-	const bool glsl = module || (hasLanguage(options) && std::any_of(files.begin(), files.end(), isScript));
+	const bool glsl = module || ((options.given("--glsl") || options.wgsl) && std::any_of(files.begin(), files.end(), isScript));
 	checkLanguage(options);
 	const GivenFeatures given = givenFeatures(*options.app, kInEmit);
 	if (!glsl && !files.empty())
@@ -351,9 +359,7 @@ std::string emitCommand(const EmitOptions& options, const std::vector<std::strin
 	}
 	if (glsl || settings.device_depth)
 	{
-		command += options.wgsl      ? " --wgsl"
-				   : isHlsl(options) ? " --hlsl " + std::string(hlslTargets().front())
-									 : " --glsl " + std::string(glslTargets()[static_cast<std::size_t>(settings.target)]);
+		command += options.wgsl ? " --wgsl" : (isHlsl(options) ? " --hlsl " : " --glsl ") + targetName(settings.target);
 	}
 	return command;
 }
@@ -392,7 +398,7 @@ void emitVolumes(const EmitOptions& options, bool mask)
 {
 	checkOutputs(options.outputs, kModuleFormats, {});
 	const GlslTarget target = options.settings.target;
-	const std::string target_name(glslTargets()[static_cast<std::size_t>(target)]);
+	const std::string target_name = targetName(target);
 	if (!options.given("--glsl") || !drawsVolumes(target))
 	{
 		refuse("--glsl: found " + (options.given("--glsl") ? target_name : "none") + ", expected 330 or 430 for " +
@@ -409,9 +415,9 @@ void emitVolumes(const EmitOptions& options, bool mask)
 		if (formatOf(path, kModuleFormats) == ".hlsl" || formatOf(path, kModuleFormats) == ".wgsl" || !isShader(path))
 		{
 			refuse(path + ": found " +
-				   (isScript(path)   ? "a script"
-					: isHeader(path) ? "a header"
-									 : "another language") +
+				   (isScript(path)                           ? "a script"
+					: formatOf(path, kModuleFormats) == ".h" ? "a header"
+															 : "another file") +
 				   ", expected a .glsl file alone: nook_volumes_draw.h fills the block");
 		}
 		files.add(path, volumesGlsl(text, {command, NOOK_VERSION, {}, {}}));
@@ -468,13 +474,18 @@ void run(EmitOptions& options, VerbProgress&)
 	{
 		return EmitContext{emitCommand(options, patterns, glsl), NOOK_VERSION, {}, bases};
 	};
-	const std::string glsl = hasLanguage(options) ? moduleGlsl(settings, contextOf(true)) : "";
+	const std::string shader = hasLanguage(options) ? moduleGlsl(settings, contextOf(true)) : "";
+	const std::string embedded = isHlsl(options) ? "" : shader; // in JavaScript
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
-		files.add(path, isShader(path)   ? glsl
-						: isScript(path) ? moduleScript(settings, contextOf(!glsl.empty()), glsl)
-										 : moduleHeader(settings, contextOf(false)));
+		const std::string_view format = formatOf(path, kModuleFormats);
+		files.add(path, isShader(path)      ? shader
+						: isScript(path)    ? moduleScript(settings, contextOf(!embedded.empty()), embedded)
+						: format == ".cs"   ? moduleSharp(settings, contextOf(false))
+						: format == ".py"   ? modulePython(settings, contextOf(false))
+						: format == ".json" ? moduleJson(settings, contextOf(false))
+											: moduleHeader(settings, contextOf(false)));
 	}
 	Facts facts = verbFacts("emit");
 	facts.text("command", emitCommand(options, patterns, hasLanguage(options)));
@@ -487,8 +498,10 @@ void run(EmitOptions& options, VerbProgress&)
 
 Verb addEmitVerb(CLI::App& nook)
 {
-	return addVerb<EmitOptions>(
-		nook, "emit", "Writes methods and their patterns as a GLSL module, a C++ header and a JavaScript module", declare, run);
+	return addVerb<EmitOptions>(nook, "emit",
+								"Writes methods and their patterns as a GLSL or HLSL module, and its uniform block for C++, "
+								"JavaScript, C#, Python or as JSON",
+								declare, run);
 }
 
 } // namespace nook

@@ -274,36 +274,24 @@ std::string versionLine(GlslTarget target)
 	return lines[static_cast<std::size_t>(target)];
 }
 
-// The start and the end of an array of constants.
-struct ArrayText
+// An array of constants. `space`: between the elements.
+std::string arrayText(const ModuleSettings& settings, const std::string& type, const std::string& name,
+					  const std::vector<std::string>& elements, const std::string& before, const std::string& space)
 {
-	std::string before;
-	const char* after;
-};
-ArrayText arrayText(const ModuleSettings& settings, const std::string& type, const std::string& name, std::size_t count)
-{
-	const std::string size = "[" + std::to_string(count) + "]";
-	const std::string declared = "const " + type + " " + name + size + " = ";
-	return isHlsl(settings) ? ArrayText{"static " + declared + "{", "};\n"} : ArrayText{declared + type + size + "(", ");\n"};
+	const std::string size = "[" + std::to_string(elements.size()) + "]";
+	std::string text = (isHlsl(settings) ? "static const " : "const ") + type + " " + name + size + " = " +
+					   (isHlsl(settings) ? "{" : type + size + "(") + before;
+	for (const std::string& element : elements)
+	{
+		text += type + "(" + element + ")" + (&element != &elements.back() ? "," + space : "");
+	}
+	return text + (isHlsl(settings) ? "};\n" : ");\n");
 }
 
 std::string columnsText(const ModuleMethod& method)
 {
 	return rowOf(method.method).third == SampleThird::log2_side ? "x, y, log2 of the side of its area, weight"
 																: columnsOf(method.variants.front().domain);
-}
-
-// Text of a tile's moves per frame.
-std::string movesText(const ModuleSettings& settings, const ModuleMethod& method, const std::string& name)
-{
-	const ArrayText array = arrayText(settings, "ivec2", name, method.moves.size());
-	std::string text = array.before;
-	for (std::size_t f = 0; f < method.moves.size(); ++f)
-	{
-		text +=
-			(f == 0 ? "ivec2(" : ", ivec2(") + std::to_string(method.moves[f].x) + ", " + std::to_string(method.moves[f].y) + ")";
-	}
-	return text + array.after;
 }
 
 // Text of a method's samples and how its kernel reads them.
@@ -333,15 +321,13 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 	}
 	else
 	{
-		const std::vector<Sample> rows = rowsOf(method);
-		const ArrayText array = arrayText(settings, "vec4", name, rows.size());
 		text += window > 1 ? "; those of one variant after the other.\n" : ".\n";
-		text += array.before + "\n";
-		for (std::size_t i = 0; i < rows.size(); ++i)
+		std::vector<std::string> rows;
+		for (const Sample& sample : rowsOf(method))
 		{
-			text += "\tvec4(" + rowText(rows[i]) + (i + 1 < rows.size() ? "),\n" : ")");
+			rows.push_back(rowText(sample));
 		}
-		text += array.after;
+		text += arrayText(settings, "vec4", name, rows, "\n\t", "\n\t");
 		const std::string at = window > 1 ? "row * " + count + " + i" : "i";
 		text += "vec4 " + function + "(int row, int i)\n{\n\treturn " + name + "[" + at + "];\n}\n";
 	}
@@ -350,7 +336,12 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 	const std::string frame = "int(nook.frame) % " + std::to_string(method.frames);
 	if (!method.moves.empty())
 	{
-		text += movesText(settings, method, stemOf(row) + "_moves");
+		std::vector<std::string> moves;
+		for (const glm::ivec2& move : method.moves)
+		{
+			moves.push_back(std::to_string(move.x) + ", " + std::to_string(move.y));
+		}
+		text += arrayText(settings, "ivec2", stemOf(row) + "_moves", moves, "", " ");
 		variant =
 			"(nookRow(pixel.y)" + cell + " + move.y) % " + side + " * " + side + " + (pixel.x" + cell + " + move.x) % " + side;
 		return text + "int " + entry + "Variant(ivec2 pixel)\n{\n\tivec2 move = " + stemOf(row) + "_moves[" + frame +

@@ -124,6 +124,13 @@ std::string moduleHeader(const ModuleSettings& settings, const EmitContext& cont
 // members of the block, the texels, the recipes' settings, and the GLSL if given.
 std::string moduleScript(const ModuleSettings& settings, const EmitContext& context, std::string_view glsl);
 
+// The same in C#, for Unity among others, and in Python.
+std::string moduleSharp(const ModuleSettings& settings, const EmitContext& context);
+std::string modulePython(const ModuleSettings& settings, const EmitContext& context);
+
+// "schema": "nook.module/1", one line: the members of the block with types and offsets, settings per method, and texels.
+std::string moduleJson(const ModuleSettings& settings, const EmitContext& context);
+
 // Emits one GLSL file with the shader stages that draw a file of volumes.
 
 // Volumes can be drawn with OpenGL 3.3 and 4.3 only.

@@ -11,80 +11,37 @@ namespace nook
 namespace
 {
 
-bool isNamePart(char c)
-{
-	return c == '_' || c == '.' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-}
+using Matches = std::sregex_iterator;
 
-// Index of the parenthesis that matches the one at `at`, in the direction of `step`.
-std::size_t matching(const std::string& text, std::size_t at, int step)
-{
-	int open = 0;
-	do
-	{
-		open += text[at] == '(' ? step : text[at] == ')' ? -step : 0;
-		at += open == 0 ? 0 : static_cast<std::size_t>(step);
-	} while (open != 0 && at < text.size());
-	return at;
-}
-
-// An operand of a comparison is a name or a call, with members after it.
-std::size_t operandBegin(const std::string& text, std::size_t end)
-{
-	std::size_t at = end;
-	while (at > 0 && (isNamePart(text[at - 1]) || text[at - 1] == ')'))
-	{
-		at = text[at - 1] == ')' ? matching(text, at - 1, -1) : at - 1;
-	}
-	return at;
-}
-
-std::size_t operandEnd(const std::string& text, std::size_t begin)
-{
-	std::size_t at = begin;
-	while (at < text.size() && (isNamePart(text[at]) || text[at] == '('))
-	{
-		at = text[at] == '(' ? matching(text, at, 1) + 1 : at + 1;
-	}
-	return at;
-}
-
-bool isVector(const std::string& operand, const std::set<std::string>& vectors)
-{
-	static const std::regex component(R"(\.[xyzw]$)");
-	return !std::regex_search(operand, component) && vectors.contains(operand.substr(0, operand.find('(')));
-}
-
-// GLSL's == and != of two vectors are one truth; HLSL's are one per component, and ?: would choose by each. `vectors`: names of
-// vectors, and of functions that return them.
-std::string withWholeComparisons(std::string code, const std::set<std::string>& vectors)
-{
-	for (const auto& [sign, function] : {std::pair{" == ", "all("}, std::pair{" != ", "any("}})
-	{
-		for (std::size_t at = code.find(sign); at != std::string::npos; at = code.find(sign, at + 1))
-		{
-			const std::size_t begin = operandBegin(code, at);
-			const std::size_t end = operandEnd(code, at + 4);
-			if (isVector(code.substr(begin, at - begin), vectors) || isVector(code.substr(at + 4, end - at - 4), vectors))
-			{
-				code.insert(end, ")");
-				code.insert(begin, function);
-				at += 4;
-			}
-		}
-	}
-	return code;
-}
-
-// Adds the names that follow a vector type.
+// Adds vector types, which are their constructors, and the names declared with them.
 void addVectors(const std::string& code, std::set<std::string>& vectors)
 {
 	static const std::regex declared(R"(\b([iu]?vec[234])\s+(\w+))");
-	for (std::sregex_iterator it(code.begin(), code.end(), declared), end; it != end; ++it)
+	for (Matches it(code.begin(), code.end(), declared), end; it != end; ++it)
 	{
-		vectors.insert((*it)[1]); // its constructor
-		vectors.insert((*it)[2]);
+		vectors.insert({(*it)[1], (*it)[2]});
 	}
+}
+
+// GLSL's == and != of two vectors are one truth; HLSL's are one per component, and ?: would choose by each. `vectors`: names of
+// vectors, and of functions that return them. An operand is a name, or a call without further calls.
+std::string withWholeComparisons(const std::string& code, const std::set<std::string>& vectors)
+{
+	static const std::regex comparison(R"((\w+)(\([^()]*\))? (==|!=) (\w+)(\([^()]*\))?(?!\w*\.))");
+	std::string text;
+	std::size_t done = 0;
+	for (Matches it(code.begin(), code.end(), comparison), end; it != end; ++it)
+	{
+		const std::smatch& match = *it;
+		const auto at = static_cast<std::size_t>(match.position());
+		const bool member = at > 0 && code[at - 1] == '.';
+		if (!member && (vectors.contains(match[1]) || vectors.contains(match[4])))
+		{
+			text += code.substr(done, at - done) + (match[3] == "==" ? "all(" : "any(") + match.str() + ")";
+			done = at + match.str().size();
+		}
+	}
+	return text + code.substr(done);
 }
 
 } // namespace
@@ -93,19 +50,19 @@ std::string toHlsl(const std::string& module)
 {
 	static const std::regex head(R"(\n[iu]?vec[234] nook\w+\()");
 	std::set<std::string> functions;
-	for (std::sregex_iterator it(module.begin(), module.end(), head), end; it != end; ++it)
+	for (Matches it(module.begin(), module.end(), head), end; it != end; ++it)
 	{
 		addVectors(it->str(), functions);
 	}
 	std::string text;
 	for (std::size_t at = 0; at < module.size();) // function by function, since each has names of its own
 	{
-		const std::size_t end = std::min(module.find("\n}\n", at), module.size());
+		const std::size_t end = std::min(module.find("\n}\n", at), module.size() - 3) + 3;
 		const std::string code = module.substr(at, end - at);
 		std::set<std::string> vectors = functions;
 		addVectors(code, vectors);
-		text += withWholeComparisons(code, vectors) + (end < module.size() ? "\n}\n" : "");
-		at = std::min(end + 3, module.size());
+		text += withWholeComparisons(code, vectors);
+		at = end;
 	}
 	text = renamed(text, {{"bitCount", "countbits"}, {"line", "one_line"}, {"point", "one_point"}}); // `line`, `point`: reserved
 	for (const auto& [type, name] : {std::pair{"ivec", "int"}, std::pair{"uvec", "uint"}, std::pair{"vec", "float"}})

@@ -95,27 +95,4 @@ std::string wgslOf(const std::string& glsl); // of functions for Vulkan
 // The file's introduction: its functions and the passes to draw.
 std::string introductionOf(const ModuleSettings& settings);
 
-// Translates the C++ that fills the uniform block (methods/runtime/nook_block.h) to JavaScript that computes the same numbers.
-//
-// Supported: structs of numbers with defaults, one member per line, with its comment after it or on the lines before; inline
-// functions of declarations, assignments, if, for and return; arrays; strings; static_cast around the whole right side; the
-// functions of <cmath> that both languages round alike.
-
-struct ScriptField
-{
-	std::string type; // C++ type: "double"
-	std::string name;
-	std::string value; // default value in JavaScript
-	std::string meaning;
-};
-
-struct ScriptText
-{
-	std::string functions;             // with their comments
-	std::vector<ScriptField> settings; // members of nook_settings
-};
-
-// Throws Error (runtime) for an unsupported statement.
-ScriptText scriptOf(std::string_view header);
-
 } // namespace nook

@@ -1,0 +1,495 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Modules for Vulkan and HLSL, compiled by glslang and dispatched by a Vulkan driver: pixels decide, not compilers.
+#include "other_tools.h"
+#include "picture_errors.h"
+#include "small_modules.h"
+#include "small_views.h"
+#include "temporary_folder.h"
+
+#include "core/file.h"
+#include "shade/shade.h"
+
+#include <vulkan/vulkan.h>
+
+#include <array>
+#include <map>
+#include <memory>
+#include <optional>
+
+using namespace nook;
+using namespace nook::test;
+
+namespace
+{
+
+template <class T> T vulkanInfo(VkStructureType type)
+{
+	T value{};
+	value.sType = type;
+	return value;
+}
+
+void requireVulkan(VkResult result)
+{
+	REQUIRE(result == VK_SUCCESS);
+}
+
+// A device that computes, its queue and a command buffer. Everything lives until the process ends.
+class VulkanDevice
+{
+public:
+	// Finds no device where device() is null.
+	VulkanDevice()
+	{
+		auto application = vulkanInfo<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
+		application.apiVersion = VK_API_VERSION_1_1;
+		auto instance_info = vulkanInfo<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
+		instance_info.pApplicationInfo = &application;
+		VkInstance instance{};
+		uint32_t count = 1;
+		VkPhysicalDevice physical{};
+		if (vkCreateInstance(&instance_info, nullptr, &instance) != VK_SUCCESS ||
+			vkEnumeratePhysicalDevices(instance, &count, &physical) < 0 || count == 0)
+		{
+			return;
+		}
+		VkPhysicalDeviceProperties properties{};
+		vkGetPhysicalDeviceProperties(physical, &properties);
+		m_name = properties.deviceName;
+		vkGetPhysicalDeviceMemoryProperties(physical, &m_memory);
+		const float priority = 1.0F;
+		auto queue = vulkanInfo<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
+		queue.queueCount = 1; // of family 0
+		queue.pQueuePriorities = &priority;
+		auto info = vulkanInfo<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
+		info.queueCreateInfoCount = 1;
+		info.pQueueCreateInfos = &queue;
+		if (vkCreateDevice(physical, &info, nullptr, &m_device) != VK_SUCCESS)
+		{
+			return;
+		}
+		vkGetDeviceQueue(m_device, 0, 0, &m_queue);
+		auto pool_info = vulkanInfo<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
+		pool_info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+		VkCommandPool pool{};
+		requireVulkan(vkCreateCommandPool(m_device, &pool_info, nullptr, &pool));
+		auto commands_info = vulkanInfo<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+		commands_info.commandPool = pool;
+		commands_info.commandBufferCount = 1;
+		requireVulkan(vkAllocateCommandBuffers(m_device, &commands_info, &m_commands));
+	}
+
+	VkDevice device() const
+	{
+		return m_device;
+	}
+	const std::string& name() const
+	{
+		return m_name;
+	}
+
+	VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags flags) const
+	{
+		auto info = vulkanInfo<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+		info.allocationSize = needs.size;
+		while ((needs.memoryTypeBits >> info.memoryTypeIndex & 1U) == 0 ||
+			   (m_memory.memoryTypes[info.memoryTypeIndex].propertyFlags & flags) != flags)
+		{
+			info.memoryTypeIndex += 1;
+			REQUIRE(info.memoryTypeIndex < m_memory.memoryTypeCount);
+		}
+		VkDeviceMemory memory{};
+		requireVulkan(vkAllocateMemory(m_device, &info, nullptr, &memory));
+		return memory;
+	}
+
+	// Records commands, runs them and waits.
+	template <class Commands> void run(const Commands& record) const
+	{
+		auto begin = vulkanInfo<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+		requireVulkan(vkBeginCommandBuffer(m_commands, &begin));
+		record(m_commands);
+		requireVulkan(vkEndCommandBuffer(m_commands));
+		auto submit = vulkanInfo<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
+		submit.commandBufferCount = 1;
+		submit.pCommandBuffers = &m_commands;
+		requireVulkan(vkQueueSubmit(m_queue, 1, &submit, VK_NULL_HANDLE));
+		requireVulkan(vkQueueWaitIdle(m_queue));
+	}
+
+private:
+	std::string m_name;
+	VkDevice m_device{};
+	VkQueue m_queue{};
+	VkCommandBuffer m_commands{};
+	VkPhysicalDeviceMemoryProperties m_memory{};
+};
+
+struct VulkanBuffer
+{
+	VkBuffer buffer{};
+	void* bytes = nullptr; // mapped
+
+	VulkanBuffer(const VulkanDevice& vulkan, std::size_t size, const void* values = nullptr)
+	{
+		auto info = vulkanInfo<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
+		info.size = size;
+		info.usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+		requireVulkan(vkCreateBuffer(vulkan.device(), &info, nullptr, &buffer));
+		VkMemoryRequirements needs{};
+		vkGetBufferMemoryRequirements(vulkan.device(), buffer, &needs);
+		const VkDeviceMemory memory =
+			vulkan.allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+		requireVulkan(vkBindBufferMemory(vulkan.device(), buffer, memory, 0));
+		requireVulkan(vkMapMemory(vulkan.device(), memory, 0, VK_WHOLE_SIZE, 0, &bytes));
+		if (values != nullptr)
+		{
+			std::memcpy(bytes, values, size);
+		}
+	}
+};
+
+// Always in the layout GENERAL, with 32 bits per channel.
+struct VulkanPicture
+{
+	VkImage image{};
+	VkImageView view{}; // of everything
+	VkFormat format{};
+	PictureShape shape;
+
+	VulkanPicture(const VulkanDevice& vulkan, const PictureShape& own, const void* values = nullptr) : shape(own)
+	{
+		constexpr std::array kFormats{VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32G32B32A32_UINT};
+		format = kFormats[static_cast<std::size_t>(shape.format)];
+		auto info = vulkanInfo<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+		info.imageType = VK_IMAGE_TYPE_2D;
+		info.format = format;
+		info.extent = {static_cast<uint32_t>(shape.width), static_cast<uint32_t>(shape.height), 1};
+		info.mipLevels = static_cast<uint32_t>(shape.levels);
+		info.arrayLayers = static_cast<uint32_t>(std::max(shape.layers, 1));
+		info.samples = VK_SAMPLE_COUNT_1_BIT;
+		info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+					 VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+		requireVulkan(vkCreateImage(vulkan.device(), &info, nullptr, &image));
+		VkMemoryRequirements needs{};
+		vkGetImageMemoryRequirements(vulkan.device(), image, &needs);
+		requireVulkan(vkBindImageMemory(vulkan.device(), image, vulkan.allocate(needs, 0), 0));
+		view = viewOf(vulkan, 0, info.mipLevels, 0, info.arrayLayers,
+					  shape.format == PictureFormat::counts ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D);
+		const std::optional<VulkanBuffer> staging =
+			values != nullptr ? std::optional<VulkanBuffer>(std::in_place, vulkan, size(), values) : std::nullopt;
+		vulkan.run(
+			[&](VkCommandBuffer commands)
+			{
+				auto barrier = vulkanInfo<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
+				barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
+				barrier.image = image;
+				barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, info.mipLevels, 0, info.arrayLayers};
+				vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
+									 nullptr, 0, nullptr, 1, &barrier);
+				if (staging)
+				{
+					const VkBufferImageCopy all = copyOfAll();
+					vkCmdCopyBufferToImage(commands, staging->buffer, image, VK_IMAGE_LAYOUT_GENERAL, 1, &all);
+				}
+			});
+	}
+
+	VkImageView viewOf(const VulkanDevice& vulkan, uint32_t level, uint32_t levels, uint32_t layer, uint32_t layers,
+					   VkImageViewType type = VK_IMAGE_VIEW_TYPE_2D) const
+	{
+		auto info = vulkanInfo<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
+		info.image = image;
+		info.viewType = type;
+		info.format = format;
+		info.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, level, levels, layer, layers};
+		VkImageView result{};
+		requireVulkan(vkCreateImageView(vulkan.device(), &info, nullptr, &result));
+		return result;
+	}
+
+	std::size_t size() const // of level 0
+	{
+		return static_cast<std::size_t>(shape.width * shape.height) * (shape.format == PictureFormat::scalar ? 4 : 16);
+	}
+
+	VkBufferImageCopy copyOfAll() const
+	{
+		VkBufferImageCopy all{};
+		all.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+		all.imageExtent = {static_cast<uint32_t>(shape.width), static_cast<uint32_t>(shape.height), 1};
+		return all;
+	}
+
+	std::vector<float> read(const VulkanDevice& vulkan) const
+	{
+		const VulkanBuffer staging(vulkan, size());
+		const VkBufferImageCopy all = copyOfAll();
+		vulkan.run([&](VkCommandBuffer commands)
+				   { vkCmdCopyImageToBuffer(commands, image, VK_IMAGE_LAYOUT_GENERAL, staging.buffer, 1, &all); });
+		std::vector<float> values(size() / 4);
+		std::memcpy(values.data(), staging.bytes, size());
+		return values;
+	}
+};
+
+// The bindings of a module (docs/reference/modules.md): the block, textures, the picture of the pass, and for textures apart from
+// their sampler the sampler, for HLSL the numbers of the pass.
+constexpr uint32_t kOutBinding = 15;
+constexpr uint32_t kLastBinding = 16;
+constexpr std::array<uint32_t, 5> kSlotBindings{6, 11, 7, 8, 9}; // by ShadeSlot
+
+struct VulkanPass
+{
+	std::map<uint32_t, VkImageView> textures;
+	VkImageView picture{};
+	uint32_t width = 0;
+	uint32_t height = 0;
+	glm::ivec4 numbers{};
+};
+
+class VulkanShader
+{
+public:
+	VulkanShader(const VulkanDevice& vulkan, const ModuleSettings& settings, const std::string& spirv) : m_vulkan(vulkan)
+	{
+		m_hlsl = settings.target == GlslTarget::hlsl60;
+		const bool separate = settings.textures == ModuleTextures::separate;
+		m_texture = m_hlsl || separate ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+		m_last = m_hlsl ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_SAMPLER;
+		std::vector<VkDescriptorSetLayoutBinding> bindings;
+		for (uint32_t i = 0; i <= kLastBinding; ++i)
+		{
+			const VkDescriptorType type = i == 0              ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+										  : i == kOutBinding  ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
+										  : i == kLastBinding ? m_last
+															  : m_texture;
+			bindings.push_back({i, type, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+		}
+		auto set_info = vulkanInfo<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+		set_info.bindingCount = static_cast<uint32_t>(bindings.size());
+		set_info.pBindings = bindings.data();
+		requireVulkan(vkCreateDescriptorSetLayout(vulkan.device(), &set_info, nullptr, &m_set_layout));
+		const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, 16};
+		auto layout_info = vulkanInfo<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+		layout_info.setLayoutCount = 1;
+		layout_info.pSetLayouts = &m_set_layout;
+		layout_info.pushConstantRangeCount = 1;
+		layout_info.pPushConstantRanges = &push;
+		requireVulkan(vkCreatePipelineLayout(vulkan.device(), &layout_info, nullptr, &m_layout));
+		std::vector<uint32_t> words(spirv.size() / 4);
+		std::memcpy(words.data(), spirv.data(), spirv.size());
+		auto module_info = vulkanInfo<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+		module_info.codeSize = spirv.size();
+		module_info.pCode = words.data();
+		auto info = vulkanInfo<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
+		info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+		info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+		info.stage.pName = "main";
+		requireVulkan(vkCreateShaderModule(vulkan.device(), &module_info, nullptr, &info.stage.module));
+		info.layout = m_layout;
+		requireVulkan(vkCreateComputePipelines(vulkan.device(), VK_NULL_HANDLE, 1, &info, nullptr, &m_pipeline));
+		auto sampler_info = vulkanInfo<VkSamplerCreateInfo>(VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO);
+		sampler_info.maxLod = VK_LOD_CLAMP_NONE;
+		requireVulkan(vkCreateSampler(vulkan.device(), &sampler_info, nullptr, &m_sampler));
+		const std::array<VkDescriptorPoolSize, 5> sizes{
+			VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2}, VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1},
+			VkDescriptorPoolSize{m_texture, 16}, VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_SAMPLER, 1}};
+		auto pool_info = vulkanInfo<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
+		pool_info.maxSets = 1;
+		pool_info.poolSizeCount = 4;
+		pool_info.pPoolSizes = sizes.data();
+		VkDescriptorPool pool{};
+		requireVulkan(vkCreateDescriptorPool(vulkan.device(), &pool_info, nullptr, &pool));
+		auto set = vulkanInfo<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
+		set.descriptorPool = pool;
+		set.descriptorSetCount = 1;
+		set.pSetLayouts = &m_set_layout;
+		requireVulkan(vkAllocateDescriptorSets(vulkan.device(), &set, &m_set));
+	}
+
+	void dispatch(const VulkanPass& pass, const VulkanBuffer& block) const
+	{
+		const VulkanBuffer numbers(m_vulkan, sizeof pass.numbers, &pass.numbers);
+		writeBuffer(0, block.buffer);
+		for (const auto& [binding, view] : pass.textures)
+		{
+			write(binding, m_texture, view);
+		}
+		write(kOutBinding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, pass.picture);
+		m_hlsl ? writeBuffer(kLastBinding, numbers.buffer) : write(kLastBinding, m_last, {});
+		m_vulkan.run(
+			[&](VkCommandBuffer commands)
+			{
+				vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, m_pipeline);
+				vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, m_layout, 0, 1, &m_set, 0, nullptr);
+				vkCmdPushConstants(commands, m_layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, 16, &pass.numbers);
+				vkCmdDispatch(commands, (pass.width + 7) / 8, (pass.height + 7) / 8, 1);
+			});
+	}
+
+private:
+	void write(uint32_t binding, VkDescriptorType type, VkImageView view, const VkDescriptorBufferInfo* buffer = nullptr) const
+	{
+		const VkDescriptorImageInfo image{m_sampler, view, VK_IMAGE_LAYOUT_GENERAL};
+		auto info = vulkanInfo<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
+		info.dstSet = m_set;
+		info.dstBinding = binding;
+		info.descriptorCount = 1;
+		info.descriptorType = type;
+		info.pImageInfo = &image;
+		info.pBufferInfo = buffer;
+		vkUpdateDescriptorSets(m_vulkan.device(), 1, &info, 0, nullptr);
+	}
+	void writeBuffer(uint32_t binding, VkBuffer buffer) const
+	{
+		const VkDescriptorBufferInfo whole{buffer, 0, VK_WHOLE_SIZE};
+		write(binding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, {}, &whole);
+	}
+
+	const VulkanDevice& m_vulkan;
+	bool m_hlsl = false;
+	VkDescriptorType m_texture{};
+	VkDescriptorType m_last{};
+	VkDescriptorSetLayout m_set_layout{};
+	VkPipelineLayout m_layout{};
+	VkPipeline m_pipeline{};
+	VkSampler m_sampler{};
+	VkDescriptorSet m_set{};
+};
+
+// SPIR-V of one pass of a whole compute shader.
+std::string spirvOf(const ModuleSettings& settings, const std::string& module, const std::string& number, PictureFormat format,
+					const TemporaryFolder& folder)
+{
+	constexpr std::array<const char*, 3> kImageFormats{"r32f", "rgba32f", "rgba32ui"};
+	const bool hlsl = settings.target == GlslTarget::hlsl60;
+	writeFile(folder / "m.comp", module);
+	REQUIRE(passes(std::string("glslangValidator -V -S comp ") + (hlsl ? "-D -e main -DNOOK_VULKAN" : "-DNOOK_OUT_FORMAT=") +
+					   (hlsl ? "" : kImageFormats[static_cast<std::size_t>(format)]) + " -DNOOK_PASS=" + number + " -o '" +
+					   folder / "m.spv" + "' '" + folder / "m.comp" + "'",
+				   folder));
+	return readFile(folder / "m.spv");
+}
+
+// The picture of a module, computed as its head says.
+std::vector<float> computed(const VulkanDevice& vulkan, const GBuffer& gbuffer, const ModuleSettings& settings)
+{
+	const TemporaryFolder folder;
+	const std::string module = moduleGlsl(settings, contextOf("nook emit"));
+	const ShadeSamples samples = samplesFor(settings);
+	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings.shade, false);
+	const std::vector<float> numbers = bytesFor(passBlockFor(gbuffer, settings.shade, 1, 0), settings.float_block);
+	const VulkanBuffer block(vulkan, numbers.size() * 4, numbers.data());
+	std::vector<glm::vec4> normals;
+	for (const glm::vec3& normal : gbuffer.normals)
+	{
+		normals.emplace_back(normal, 0.0F);
+	}
+	const VulkanPicture depths(vulkan, {PictureFormat::scalar, gbuffer.width_px, gbuffer.height_px}, finiteDepths(gbuffer).data());
+	const VulkanPicture normal_picture(vulkan, {PictureFormat::quad, gbuffer.width_px, gbuffer.height_px}, normals.data());
+	const std::vector<glm::vec4> texels = tileTexels(samples);
+	const VulkanPicture tile(vulkan, {PictureFormat::quad, static_cast<int>(texels.size()) / samples.count, samples.count},
+							 texels.data());
+	std::vector<std::unique_ptr<VulkanPicture>> pictures;
+	for (const PictureShape& shape : plan.pictures)
+	{
+		pictures.push_back(std::make_unique<VulkanPicture>(vulkan, shape));
+	}
+	std::string entry;
+	std::vector<std::string> calls;
+	std::map<std::string, VulkanShader> shaders;
+	std::vector<ShadeRead> upsampled;
+	for (const ShadePass& pass : plan.passes)
+	{
+		if (std::string(pass.kernel.call) == "nookUpsample") // a part of nook...Full
+		{
+			upsampled = pass.reads;
+			continue;
+		}
+		entry = pass.of_pixel ? pass.kernel.call : entry;
+		const std::string call = passCallOf(pass, entry, settings.shade.half_resolution);
+		const std::string number = passNumber(calls, call);
+		const VulkanPicture& picture = *pictures[pass.picture];
+		if (!shaders.contains(call))
+		{
+			shaders.emplace(
+				std::piecewise_construct, std::forward_as_tuple(call),
+				std::forward_as_tuple(vulkan, settings, spirvOf(settings, module, number, picture.shape.format, folder)));
+		}
+		VulkanPass one;
+		one.textures = {{1, depths.view}, {2, normal_picture.view}};
+		for (const uint32_t binding : {3U, 4U, 5U, 10U, 12U}) // the tile of any method
+		{
+			one.textures[binding] = tile.view;
+		}
+		std::vector<ShadeRead> reads = pass.reads;
+		reads.insert(reads.end(), upsampled.begin(), upsampled.end());
+		for (const ShadeRead& read : reads)
+		{
+			one.textures[kSlotBindings[static_cast<std::size_t>(read.slot)]] = pictures[read.picture]->view;
+		}
+		one.picture = picture.viewOf(vulkan, static_cast<uint32_t>(pass.level), 1, static_cast<uint32_t>(pass.layer), 1);
+		one.width = static_cast<uint32_t>(std::max(picture.shape.width >> pass.level, 1));
+		one.height = static_cast<uint32_t>(std::max(picture.shape.height >> pass.level, 1));
+		one.numbers = modulePassOf(pass.block, pass.kernel.call);
+		if (settings.float_block)
+		{
+			const glm::vec4 floats(one.numbers);
+			std::memcpy(&one.numbers, &floats, sizeof floats);
+		}
+		shaders.at(call).dispatch(one, block);
+	}
+	return pictures[plan.passes.back().picture]->read(vulkan);
+}
+
+float largestDifference(const std::vector<float>& a, const std::vector<float>& b)
+{
+	REQUIRE(a.size() == b.size());
+	float largest = 0.0F;
+	for (std::size_t i = 0; i < a.size(); ++i)
+	{
+		largest = std::max(largest, std::fabs(a[i] - b[i]));
+	}
+	return largest;
+}
+
+} // namespace
+
+TEST_CASE("module: HLSL and Vulkan's GLSL compute one picture, that of nook shade", "[emit]")
+{
+	static const VulkanDevice vulkan;
+	if (vulkan.device() == nullptr || !toolExists("glslangValidator"))
+	{
+		WARN("skipped: found no Vulkan device or no glslangValidator, expected Debian's mesa-vulkan-drivers and glslang-tools");
+		return;
+	}
+	const GBuffer gbuffer = builtinView("courtyard", 128, 72);
+	std::vector<PassCase> cases = passCases();
+	for (const ShadeMethod method : {ShadeMethod::vo_point, ShadeMethod::slices})
+	{
+		cases.push_back({"one pass", {}});
+		cases.back().shade.method = method;
+		cases.back().shade.radius_m = 0.8;
+		cases.back().shade.slices.bent = method == ShadeMethod::slices;
+		cases.back().shade.filter = method == ShadeMethod::slices ? ShadeFilter::bilateral : ShadeFilter::none;
+	}
+	std::size_t number = 0;
+	for (const PassCase& one : cases)
+	{
+		number += 1;
+		ModuleSettings settings = moduleOf(one, GlslTarget::vulkan);
+		settings.main = ModuleMain::compute;
+		settings.tile = number % 2 == 0 ? TilePlace::array : TilePlace::texture;
+		settings.float_block = number % 3 == 0;
+		settings.textures = number % 2 == 0 ? ModuleTextures::separate : ModuleTextures::fixed;
+		CAPTURE(one.name, vulkan.name());
+		const std::vector<float> glsl = computed(vulkan, gbuffer, settings);
+		if (!one.shade.slices.bent)
+		{
+			checkSamePicture(shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility, glsl);
+		}
+		settings.target = GlslTarget::hlsl60;
+		CHECK(largestDifference(glsl, computed(vulkan, gbuffer, settings)) <= 1e-6F);
+	}
+}

@@ -19,7 +19,7 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 7> kModuleFormats{".glsl", ".hlsl", ".h", ".js", ".cs", ".py", ".json"};
+constexpr std::array<std::string_view, 8> kModuleFormats{".glsl", ".hlsl", ".wgsl", ".h", ".js", ".cs", ".py", ".json"};
 constexpr std::array<std::string_view, 2> kModuleNormals{"texture", "from-depth"};
 constexpr std::array<std::string_view, 2> kModuleBlocks{"mixed", "floats"};
 constexpr std::array<std::string_view, 2> kModuleMains{"fragment", "compute"};
@@ -34,6 +34,7 @@ struct EmitOptions
 	std::string counts;
 	ModuleSettings settings;
 	std::optional<int> hlsl;
+	bool wgsl = false;
 	int directions = 128;
 	std::string recipe = "rays"; // paper, rays or a file
 	Outputs outputs;
@@ -46,23 +47,29 @@ struct EmitOptions
 
 std::string targetName(GlslTarget target)
 {
-	return std::string(target == GlslTarget::hlsl60 ? hlslTargets().front() : glslTargets()[static_cast<std::size_t>(target)]);
+	return target == GlslTarget::wgsl ? ""
+									  : std::string(target == GlslTarget::hlsl60 ? hlslTargets().front()
+																				 : glslTargets()[static_cast<std::size_t>(target)]);
 }
 
 bool isHlsl(const EmitOptions& options)
 {
 	return options.settings.target == GlslTarget::hlsl60;
 }
+std::string languageOption(const EmitOptions& options)
+{
+	return isHlsl(options) ? "--hlsl" : options.wgsl ? "--wgsl" : "--glsl";
+}
 bool hasLanguage(const EmitOptions& options)
 {
-	return options.given("--glsl") || options.given("--hlsl");
+	return options.given("--glsl") || options.given("--hlsl") || options.wgsl;
 }
 
 // Standard output gets the module.
 bool isShader(const std::string& path)
 {
 	const std::string_view format = formatOf(path, kModuleFormats);
-	return format == ".glsl" || format == ".hlsl" || path == "-";
+	return format == ".glsl" || format == ".hlsl" || format == ".wgsl" || path == "-";
 }
 
 bool isScript(const std::string& path)
@@ -125,6 +132,7 @@ void declare(CLI::App& app, EmitOptions& options)
 		  "Language of the .glsl file: OpenGL 3.3, OpenGL 4.3 (explicit bindings), OpenGL ES 3.0, or Vulkan (GLSL 4.50)"},
 		 {"--hlsl", takesChoice(hlslTargets(), options.hlsl),
 		  "Language of the .hlsl file instead: HLSL, shader model 6.0 (Direct3D 12, Unity, Unreal)", screen},
+		 {"--wgsl", takesFlag(options.wgsl), "WGSL instead, in a .wgsl file (WebGPU, Bevy, Babylon.js)", screen},
 		 {"--textures", takesChoice(kModuleTextures, settings.textures),
 		  "How a .glsl file reads textures: tiles and packed pictures directly (fixed, default); all of them through macros that "
 		  "you "
@@ -222,23 +230,27 @@ std::vector<std::string> inputsOf(const EmitOptions& options, std::vector<std::s
 void checkLanguage(const EmitOptions& options)
 {
 	const ModuleSettings& settings = options.settings;
-	if (isHlsl(options))
+	const std::string name = languageOption(options);
+	if (isHlsl(options) || options.wgsl)
 	{
-		refuseGiven(*options.app, {"--glsl"}, "with --hlsl, expected one language per run");
-		refuseGiven(*options.app, {"--textures"}, "with --hlsl, whose textures always are separate and behind macros");
+		refuseGiven(*options.app, {"--glsl"}, "with " + name + ", expected one language per run");
+		refuseGiven(*options.app, {"--textures"}, "with " + name + ", whose textures always are separate");
+	}
+	if (options.hlsl && options.wgsl)
+	{
+		refuse("--wgsl: found with --hlsl, expected one language per run");
 	}
 	for (const std::string& path : options.outputs.files)
 	{
 		const std::string_view format = formatOf(path, kModuleFormats);
 		if (isShader(path) && !hasLanguage(options))
 		{
-			const std::string language = format == ".hlsl" ? "hlsl" : "glsl";
-			refuse("--" + language + ": missing, expected one for the ." + language + " file");
+			const std::string missing(path == "-" ? "glsl" : format.substr(1));
+			refuse("--" + missing + ": missing, expected one for the ." + missing + " file");
 		}
-		if ((format == ".hlsl" && !isHlsl(options)) || (format == ".glsl" && isHlsl(options)))
+		if (isShader(path) && path != "-" && format.substr(1) != name.substr(2))
 		{
-			const std::string language = isHlsl(options) ? "hlsl" : "glsl";
-			refuse(path + ": found with --" + language + ", expected -o FILE." + language);
+			refuse(path + ": found with " + name + ", expected -o FILE." + name.substr(2));
 		}
 	}
 	const std::string found = ": found --glsl " + targetName(settings.target);
@@ -278,13 +290,14 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 		refuseGiven(*options.app, {"--namespace"}, "without a .h or .cs file, expected -o FILE.h as well");
 	}
 	const bool module = std::any_of(files.begin(), files.end(), isShader);
-	const bool glsl = module || (options.given("--glsl") && std::any_of(files.begin(), files.end(), isScript));
+	const bool glsl = module || ((options.given("--glsl") || options.wgsl) && std::any_of(files.begin(), files.end(), isScript));
 	checkLanguage(options);
 	const GivenFeatures given = givenFeatures(*options.app, kInEmit);
 	if (!glsl && !files.empty())
 	{
 		const std::string without = "without a .glsl file, expected -o FILE.glsl as well";
-		refuseGiven(*options.app, {"--glsl", "--hlsl", "--textures", "--depth", "--normals", "--gather", "--main"}, without);
+		refuseGiven(*options.app, {"--glsl", "--hlsl", "--wgsl", "--textures", "--depth", "--normals", "--gather", "--main"},
+					without);
 		for (const FeatureRow* const row : given)
 		{
 			if (!isOfHeader(row))
@@ -346,7 +359,7 @@ std::string emitCommand(const EmitOptions& options, const std::vector<std::strin
 	}
 	if (glsl || settings.device_depth)
 	{
-		command += (isHlsl(options) ? " --hlsl " : " --glsl ") + targetName(settings.target);
+		command += options.wgsl ? " --wgsl" : (isHlsl(options) ? " --hlsl " : " --glsl ") + targetName(settings.target);
 	}
 	return command;
 }
@@ -399,7 +412,7 @@ void emitVolumes(const EmitOptions& options, bool mask)
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
-		if (!isShader(path) || formatOf(path, kModuleFormats) == ".hlsl")
+		if (formatOf(path, kModuleFormats) == ".hlsl" || formatOf(path, kModuleFormats) == ".wgsl" || !isShader(path))
 		{
 			refuse(path + ": found " +
 				   (isScript(path)                           ? "a script"
@@ -423,7 +436,7 @@ void run(EmitOptions& options, VerbProgress&)
 		emitVolumes(options, row->masks);
 		return;
 	}
-	options.settings.target = options.hlsl ? GlslTarget::hlsl60 : options.settings.target;
+	options.settings.target = options.wgsl ? GlslTarget::wgsl : options.hlsl ? GlslTarget::hlsl60 : options.settings.target;
 	const std::vector<ShadeMethod> methods = methodsOf(options.methods);
 	const std::vector<std::string> patterns = partsOf(options.patterns);
 	const std::vector<std::size_t> counts = countsOf(options, patterns.size());

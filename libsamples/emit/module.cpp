@@ -208,6 +208,7 @@ std::string passText(const ModuleSettings& settings)
 	const std::string text = "\n// Parameters of the pass that is drawn, as the list at the top says.\n";
 	switch (settings.target)
 	{
+	case GlslTarget::wgsl:
 	case GlslTarget::vulkan: return text + "layout(push_constant) uniform nook_pass_block\n{\n\t" + member + "\n};\n";
 	case GlslTarget::hlsl60:
 		return text + placeMacro("NOOK_PASS_BINDING", 1, 16) +
@@ -255,6 +256,7 @@ std::string headOf(const ModuleSettings& settings)
 			   "#ifdef NOOK_VULKAN // define it first for SPIR-V\n"
 			   "#ifndef NOOK_SET\n#define NOOK_SET 0 // descriptor set of every binding of this module\n#endif\n"
 			   "#define NOOK_AT(number) [[vk::binding(number, NOOK_SET)]]\n#else\n#define NOOK_AT(number)\n#endif\n";
+	case GlslTarget::wgsl:
 	case GlslTarget::vulkan: break;
 	}
 	return "#if !defined(VULKAN) || __VERSION__ < 450\n#error nook: this module needs #version 450 or later, and Vulkan\n#endif\n"
@@ -489,7 +491,7 @@ std::span<const std::string_view> hlslTargets()
 
 bool hasCompute(GlslTarget target)
 {
-	return hasBindings(target);
+	return hasBindings(target) || target == GlslTarget::wgsl;
 }
 
 std::string stemOf(const MethodRow& row)
@@ -567,6 +569,10 @@ bool readsNormals(const ModuleSettings& settings)
 
 std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& context)
 {
+	if (settings.target == GlslTarget::wgsl)
+	{
+		return moduleWgsl(settings, context);
+	}
 	const bool makes_normals = settings.normals_from_depth && readsNormals(settings);
 	FunctionWriter writer(kernels());
 	// Functions that inputs depend on come before them, all others after.

@@ -28,6 +28,7 @@ enum class GlslTarget
 	es300,  // OpenGL ES 3.0 and later
 	vulkan, // Vulkan: GLSL 4.50 with descriptor sets and bindings
 	hlsl60, // HLSL for shader model 6.0, Direct3D 12; it needs nothing that 5.0 lacks
+	wgsl,   // WebGPU: translated from the GLSL for Vulkan
 };
 std::span<const std::string_view> glslTargets(); // 330 430 es300 vulkan
 std::span<const std::string_view> hlslTargets(); // 60

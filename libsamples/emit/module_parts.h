@@ -31,7 +31,8 @@ std::vector<std::pair<std::string, std::string>> presetsOf(const ModuleSettings&
 // True if the language's API has NDC z from 0 to 1, the preset for depth buffers.
 inline bool hasUnitClip(const ModuleSettings& settings)
 {
-	return settings.target == GlslTarget::vulkan || settings.target == GlslTarget::hlsl60;
+	return settings.target == GlslTarget::vulkan || settings.target == GlslTarget::hlsl60 ||
+		   settings.target == GlslTarget::wgsl;
 }
 
 // Features of a method.
@@ -85,6 +86,11 @@ std::vector<ModulePass> mainPasses(const ModuleSettings& settings);
 // GLSL declarations and functions in the kernels' subset as HLSL: names of types and functions, words that HLSL reserves, and
 // comparisons of vectors, which return vectors there.
 std::string toHlsl(const std::string& module);
+
+// The module in WGSL, with its bindings in one place, and with an entry point per pass if it is a complete shader. Throws Error
+// (unsupported) for GLSL that is not translated.
+std::string moduleWgsl(const ModuleSettings& settings, const EmitContext& context);
+std::string wgslOf(const std::string& glsl); // of functions for Vulkan
 
 // The file's introduction: its functions and the passes to draw.
 std::string introductionOf(const ModuleSettings& settings);

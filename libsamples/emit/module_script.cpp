@@ -478,11 +478,11 @@ std::string moduleScript(const ModuleSettings& settings, const EmitContext& cont
 		const std::string parts = reachText(settings, method) + (fromTexture(settings, method) ? texelsText(method) : "");
 		text += "\n/** " + std::string(row.what) + " */\nexport const " + exportedName(row) + " = {\n" + parts + "};\n";
 	}
-	text +=
-		glsl.empty()
-			? ""
-			: "\n/** The GLSL module: put your #version before it, and the code that calls it behind it. */\nexport const glsl = " +
-				  templateOf(glsl) + ";\n";
+	const bool wgsl = settings.target == GlslTarget::wgsl;
+	const std::string module =
+		wgsl ? "\n/** The WGSL module: put the code that calls it behind it. */\nexport const wgsl = "
+			 : "\n/** The GLSL module: put your #version before it, and the code that calls it behind it. */\nexport const glsl = ";
+	text += glsl.empty() ? "" : module + templateOf(glsl) + ";\n";
 	return withoutLineEnds(text);
 }
 

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: webgpu_test.sh PROGRAM SOURCE FOLDER. nook emit --wgsl: complete shaders of every method, drawn by Dawn, equal the pictures
+# of nook shade within 1/255; what is refused. WebGPU for Node.js is downloaded from npm's registry once into FOLDER. Exit code 77: no
+# npm, registry or Vulkan driver.
+set -u
+nook=$(realpath "$1")
+source=$(realpath "$2")
+cache=$3
+. "$(dirname "$0")/table.sh"
+
+skip()
+{
+	echo "skipped: $*" >&2
+	exit 77
+}
+
+command -v node >/dev/null && command -v npm >/dev/null || skip "found no node or no npm, expected both (scripts/setup.sh)"
+mkdir -p "$cache" && cp "$source"/tests/webgpu/* "$cache" && cache=$(realpath "$cache") || exit 1
+if ! [ -e "$cache/installed" ]; then
+	(cd "$cache" && timeout 120 npm ci --no-audit --no-fund --ignore-scripts --fetch-retries 1 --fetch-timeout 30000) >"$folder/log" 2>&1 ||
+		skip "npm could not install webgpu: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
+	touch "$cache/installed" # only once everything is installed
+fi
+# Chromium's driver on the CPU, because Dawn refuses Mesa's as incomplete.
+for driver in /usr/lib/chromium/vk_swiftshader_icd.json; do
+	[ -e "$driver" ] && export VK_ICD_FILENAMES="$driver"
+done
+
+cd "$folder" || exit 1
+for domain in disk ball hemisphere; do
+	"$nook" pattern --domain $domain --count 6 --starts 1 -o $domain.json || problem "$domain: not made"
+	"$nook" tile --pattern $domain.json --size 4 --kind random -o ${domain}_tile.json || problem "$domain: no tile"
+done
+"$nook" pattern --domain disk --count 6 --order progressive --starts 1 -o bands.json || problem "bands: not made"
+"$nook" gbuffer builtin:suburb --camera auto:1 --size 80x48 -o g.exr || problem "no G-buffer"
+names=
+
+# drawn NAME METHOD SAMPLES EMIT_OPTIONS OPTIONS…: a complete shader, and the picture and passes of nook shade.
+drawn()
+{
+	name=$1
+	method=$2
+	samples=$3
+	emits=$4
+	shift 4
+	"$nook" emit --methods "$method" ${samples:+--patterns "$samples"} --wgsl --main fragment $emits "$@" -o "$name.wgsl" || problem "$name: not emitted"
+	for file in exr json; do
+		"$nook" shade g.exr --method "$method" ${samples:+--pattern "$samples"} --radius 1.5 "$@" -o "$name.$file" || problem "$name: not drawn"
+	done
+	names="$names $name"
+}
+drawn lines vo-line disk_tile.json "" --filter window
+drawn lines-normals vo-line disk_tile.json "--tile array" --normals from-depth --filter bilateral --falloff quadratic
+drawn lines-half vo-line disk_tile.json "--block floats" --filter bilateral --resolution half
+drawn lines-bands vo-line bands.json "" --bands 3 --filter none --recipe paper
+drawn points vo-point ball_tile.json "" --filter bilateral
+drawn areas vo-area disk_tile.json "" --filter bilateral
+drawn alchemy alchemy hemisphere_tile.json "" --filter window --depth-levels 3
+drawn alchemy-cut alchemy hemisphere.json "" --cut --filter none --recipe paper
+drawn statvo statvo "" "" --quadrants --filter bilateral
+drawn statvo-uniform statvo "" "--block floats" --layering uniform --layers 8 --tables half --filter none --recipe paper
+drawn slices slices "" "" --filter bilateral --slices 2
+drawn slices-bent slices "" "" --bent --filter bilateral
+lines="--methods vo-line --patterns disk_tile.json --filter window --wgsl"
+"$nook" emit $lines --main fragment -o nook_vo.js || problem "page: not emitted"
+"$nook" emit $lines --main compute -o compute.wgsl || problem "compute: not emitted"
+cp lines.json compute.json
+cp lines.exr compute.exr
+cp lines.exr page.exr
+names="$names compute page"
+echo '{ "type": "module" }' >package.json # for nook_vo.js
+node "$cache/draw.mjs" "$source" $names >said 2>log
+code=$?
+[ $code = 77 ] && skip "$(cat said)"
+[ $code = 0 ] || problem "draw.mjs: exit code $code: $(tail -n 3 log)"
+for name in $names; do
+	checks=$((checks + 1))
+	result=$(sed -n "s/^$name //p" said)
+	[ -n "$result" ] && [ "${result##* }" = 0 ] || problem "$name: found '$result', expected no pixel beyond 1/255"
+done
+cat said
+
+# refuses PATTERN OPTIONS…
+refuses()
+{
+	checks=$((checks + 1))
+	pattern=$1
+	shift
+	"$nook" emit "$@" 2>err
+	found=$?
+	[ $found = 1 ] && grep -q -e "$pattern" err && [ "$(wc -l <err)" = 1 ] || problem "$*: exit code $found, '$(cat err)', expected 1 and '$pattern'"
+}
+refuses 'refused.glsl: found with --wgsl, expected -o FILE.wgsl' --methods slices --wgsl -o refused.glsl
+refuses '--wgsl: missing, expected one for the .wgsl file' --methods slices -o refused.wgsl
+refuses '--glsl: found with --wgsl, expected one language' --methods slices --wgsl --glsl 330 -o refused.wgsl
+refuses '--wgsl: found with --hlsl, expected one language' --methods slices --wgsl --hlsl 60 -o refused.wgsl
+refuses '--wgsl: found with --methods aov, expected a screen-space method' --methods aov --wgsl -o refused.wgsl
+finish

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Makes man pages and completions of what --help prints, which comes from the rows that the parser uses: nook.1, nook-VERB.1, and the
+# Makes man pages and completions of what --help prints, which comes from the rows that the parser uses: nook.1.gz, nook-VERB.1.gz, and the
 # completions nook (bash), _nook (zsh) and nook.fish.
 # usage: help_pages.sh NOOK FOLDER   e.g. help_pages.sh "qemu-aarch64-static build/aarch64/tools/nook" man
 set -eu
@@ -39,7 +39,6 @@ rowsOf()
 			blankAt = index(left, " ")
 			names = blankAt ? substr(left, 1, blankAt - 1) : left
 			value = blankAt ? substr(left, blankAt + 1) : ""
-			if (!gap && length(left) <= 28 && match(left, / [^ ]*$/) == 0) value = ""
 			next
 		}
 		/^   / && kind != "" { sub(/^ +/, ""); help = help (help == "" ? "" : " ") $0 }
@@ -93,7 +92,7 @@ for page in "" $(sed -n 's/^|verb|\([^|]*\)|.*/\1/p' "$rows"); do
 		END {
 			print ".SH EXIT STATUS\n0 ok, 1 usage, 2 file cannot be read or written, 3 invalid input, 4 failed at run time, 5 not supported, 7 difference found."
 			print ".SH SEE ALSO\n" (page == "" ? "One page for each command, such as\n.BR nook\\-pattern (1)" : ".BR nook (1)")
-		}' "$rows" >"$out/nook${page:+-$page}.1"
+		}' "$rows" | gzip -9n >"$out/nook${page:+-$page}.1.gz"
 done
 
 awk "$common"'
@@ -113,12 +112,12 @@ awk "$common"'
 		for (v in verbs) if (v != "") print "\t[[ $verb != " v " ]] || ((COMP_CWORD < 3)) || verb=\"" v " ${COMP_WORDS[2]}\""
 		printf "\tcase \"$verb ${COMP_WORDS[COMP_CWORD - 1]}\" in\n%s\t%s) ;;\n\t*)\n\t\tcase $verb in\n", cases, files
 		for (v in options) printf "\t\t\"%s\") words=\"%s\" ;;\n", v, substr(options[v] verbs[v], 2)
-		print "\t\tesac\n\t\t[[ $word = -* || \" pattern report \" != *\" ${verb:-none} \" ]] || :\n\t\t;;\n\tesac"
+		print "\t\tesac\n\t\t;;\n\tesac"
 		print "\tmapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$word\")\n}\ncomplete -o default -F _nook nook"
-	}' "$rows" | grep -v '|| :$' >"$out/nook"
+	}' "$rows" >"$out/nook"
 
 awk "$common"'
-	function quoted(text) { gsub(/\x27/, "\x27\\\x27\x27", text); gsub(/[\[\]:\\]/, "\\\\&", text); return text }
+	function quoted(text) { gsub(/[\[\]:\\]/, "\\\\&", text); gsub(/\x27/, "\x27\\\x27\x27", text); return text }
 	{ parse() }
 	kind == "verb" { verbs[verb] = verbs[verb] " \x27" name ":" quoted(help) "\x27" }
 	kind == "option" {

@@ -84,6 +84,7 @@ fill()
 	cp "$here/../LICENSE" "$here/../LICENSES/MIT.txt" "$doc/"
 	rm -rf "$root/share/doc/libnook-dev" "$root"/share/doc/nook/changelog* "$root/share/doc/nook/copyright"
 	if readelf -l "$root/bin/nook" | grep -q INTERP; then
+		readelf -h "$root/bin/nook" | grep -q X86-64 || refuse 5 "$build: found shared libraries, expected a static program except on x86-64"
 		mkdir "$root/libexec"
 		mv "$root/bin/nook" "$root/libexec/"
 		for worker in "$root"/lib/nook/nook_*_worker; do

@@ -129,7 +129,7 @@ std::optional<AlphaImage> alphaOf(OIIO::ImageInput& input, const EncodedAlpha& p
 	{
 		if (all.empty())
 		{
-			all.resize(values.size() * static_cast<std::size_t>(spec.height));
+			all.assign(values.size() * static_cast<std::size_t>(spec.height), 255); // GIF leaves opacity as it is
 			next = all.begin();
 			if (!input.read_image(0, 0, place.first, place.first + place.count, OIIO::TypeDesc::UINT8, all.data()))
 			{

@@ -306,7 +306,9 @@ public:
 		m_bits = littleEndian(m_bytes, 28, 2);
 		m_rows_at = littleEndian(m_bytes, 10, 4);
 		width_px = static_cast<int>(littleEndian(m_bytes, 18, 4));
-		height_px = static_cast<int>(littleEndian(m_bytes, 22, 4)); // below 0: stored from the top, which OpenImageIO refuses
+		height_px = static_cast<int>(littleEndian(m_bytes, 22, 4)); // below 0: stored from the top
+		m_up = height_px > 0;
+		height_px = std::max(height_px, -INT32_MAX) * (m_up ? 1 : -1);
 		channels = m_bits == 32 ? 4 : 3;
 		m_row_bytes = (static_cast<std::size_t>(std::max(width_px, 0)) * m_bits + 31) / 32 * 4;
 		const std::size_t palette_at = kFileHeader + littleEndian(m_bytes, 14, 4);

@@ -493,11 +493,12 @@ Decoded<AlphaImage> decodedAlpha(std::string_view bytes, const EncodedAlpha& pic
 		return answer;
 	}
 	const auto channels = static_cast<std::size_t>(reader->channels);
-	std::vector<uint8_t> row(static_cast<std::size_t>(reader->width_px) * channels * static_cast<std::size_t>(reader->bits / 8));
+	std::vector<uint8_t> row;
 	const auto readRow = [&](ChannelPlace place, std::vector<uint8_t>& values)
 	{
 		const auto first = static_cast<std::size_t>(place.first);
 		const auto count = static_cast<std::size_t>(place.count);
+		row.resize(static_cast<std::size_t>(reader->width_px) * channels * static_cast<std::size_t>(reader->bits / 8));
 		const bool whole = reader->readRow(row.data());
 		for (std::size_t i = 0; i < values.size(); ++i)
 		{

@@ -10,6 +10,24 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_COMPONENTS_ALL nook libnook-dev)
 
+set(NOOK_HOMEPAGE "" CACHE STRING "Address of the project, for packages' Homepage")
+set(CPACK_PACKAGE_HOMEPAGE_URL ${NOOK_HOMEPAGE})
+
+# Man pages and completions are made as they are installed, by the program that is.
+if(UNIX AND NOT EMSCRIPTEN AND (NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMPILING_EMULATOR))
+	list(JOIN CMAKE_CROSSCOMPILING_EMULATOR " " emulator)
+	install(CODE "
+		set(pages \"${PROJECT_BINARY_DIR}/help_pages\")
+		execute_process(COMMAND sh \"${PROJECT_SOURCE_DIR}/packaging/help_pages.sh\" \"${emulator} ${PROJECT_BINARY_DIR}/tools/nook\" \"\${pages}\"
+			COMMAND_ERROR_IS_FATAL ANY)
+		file(GLOB manual \"\${pages}/*.gz\")
+		set(share \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\")
+		file(INSTALL \${manual} DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1\")
+		file(INSTALL \"\${pages}/nook\" DESTINATION \"\${share}/bash-completion/completions\")
+		file(INSTALL \"\${pages}/_nook\" DESTINATION \"\${share}/zsh/vendor-completions\")
+		file(INSTALL \"\${pages}/nook.fish\" DESTINATION \"\${share}/fish/vendor_completions.d\")" COMPONENT nook)
+endif()
+
 if(WIN32)
 	set(CPACK_GENERATOR ZIP)
 	set(CPACK_COMPONENTS_ALL nook licences)

@@ -76,9 +76,8 @@ std::size_t storedBytes(const std::vector<EncodedAlpha>& pictures)
 // Rejects an OpenEXR with too many attributes: OpenImageIO takes quadratic time to read them.
 void checkAttributes(std::string_view bytes, const std::string& name)
 {
-	constexpr std::string_view kExr = "\x76\x2F\x31\x01";
 	std::size_t at = 8;
-	for (std::size_t count = 0; bytes.starts_with(kExr) && at < bytes.size() && bytes[at] != '\0'; ++count)
+	for (std::size_t count = 0; looksExr(bytes) && at < bytes.size() && bytes[at] != '\0'; ++count)
 	{
 		const std::size_t type = bytes.find('\0', at);
 		const std::size_t end = bytes.find('\0', type == std::string_view::npos ? type : type + 1);
@@ -114,17 +113,30 @@ std::string beginOf(const std::string& path)
 	return bytes;
 }
 
-bool looksPng(std::string_view bytes)
+// For a file that the worker that is to read it declines, or that a missing OpenImageIO would read.
+[[noreturn]] void refuseDeclined(const std::string& name, const std::string& defect)
 {
-	return bytes.starts_with("\x89PNG\r\n\x1A\n");
+	if (!defect.empty())
+	{
+		throw Error(ExitCode::invalid_input, name + ": found " + oneLine(defect) + ", expected an image that can be read");
+	}
+	throw Error(ExitCode::unsupported, name + ": found a picture that only OpenImageIO reads, which is not installed, expected " +
+										   "PNG, JPEG, TGA, BMP, EXR or uncompressed KTX2");
 }
 
-// Decodes with a worker that reads only some files of a format; false if it declines this one.
-bool decodeBy(const char* worker, std::string_view bytes, const std::string& name, const IsolationLimits& limits, Image& image)
+// Decodes with a worker that does not need OpenImageIO; false if it declines the file, with the defect.
+bool decodeBy(const char* worker, bool all, std::string_view bytes, const std::string& name, const IsolationLimits& limits,
+			  Image& image, std::string& defect)
 {
 	bool taken = false;
 	isolate(
-		ask(worker, kDecode), name, limits, [&](ValueWriter& to) { to.values(bytes); },
+		ask(worker, kDecode), name, limits,
+		[&](ValueWriter& to)
+		{
+			to.value(all);
+			to.text(name);
+			to.values(bytes);
+		},
 		[&](ValueReader& from)
 		{
 			image = {};
@@ -132,7 +144,9 @@ bool decodeBy(const char* worker, std::string_view bytes, const std::string& nam
 			if (taken)
 			{
 				receive(image, from);
+				return;
 			}
+			defect = from.text();
 		});
 	return taken;
 }
@@ -144,7 +158,7 @@ public:
 	AlphaDecoder(const std::vector<EncodedAlpha>& pictures, const std::string& all, std::size_t max_texels)
 		: m_pictures(pictures), m_all(all), m_max_texels(max_texels), m_stored(storedBytes(pictures)),
 		  m_most_in_all(std::min(kMaxTexelsInAll * max_texels, max_texels + kTexelsPerByte * m_stored)), m_images(pictures.size()),
-		  m_taken(pictures.size())
+		  m_taken(pictures.size()), m_defects(pictures.size())
 	{
 	}
 
@@ -190,8 +204,19 @@ public:
 			});
 	}
 
+	bool isDone() const
+	{
+		return std::find(m_taken.begin(), m_taken.end(), 0) == m_taken.end();
+	}
+
 	std::vector<AlphaImage> takeImages()
 	{
+		const auto left = std::find(m_taken.begin(), m_taken.end(), 0);
+		if (left != m_taken.end())
+		{
+			const auto i = static_cast<std::size_t>(left - m_taken.begin());
+			refuseDeclined(m_pictures[i].name, m_defects[i]);
+		}
 		return std::move(m_images);
 	}
 
@@ -202,6 +227,7 @@ private:
 		m_taken[i] = from.value<bool>() ? 1 : 0;
 		if (m_taken[i] == 0)
 		{
+			m_defects[i] = from.text();
 			return;
 		}
 		receive(m_images[i], from);
@@ -221,7 +247,8 @@ private:
 	std::size_t m_texels = 0;
 	std::string m_name; // picture being decoded
 	std::vector<AlphaImage> m_images;
-	std::vector<uint8_t> m_taken; // 1: decoded
+	std::vector<uint8_t> m_taken;       // 1: decoded
+	std::vector<std::string> m_defects; // why a picture was declined
 };
 
 } // namespace
@@ -233,9 +260,18 @@ Image decodeImage(std::string_view bytes, const std::string& name)
 	// Deflate expands at most 1032 times, and each byte becomes a 4-byte float.
 	const IsolationLimits limits{std::min(kTables + 4200 * bytes.size(), kMostReadingMemory),
 								 kTime_s + static_cast<int>(bytes.size() / kBytesPerSecond)};
-	if ((looksOurs(bytes) && decodeBy(kExrWorker, bytes, name, limits, image)) ||
-		(looksPng(bytes) && decodeBy(kPngWorker, bytes, name, limits, image)))
+	const char* const worker = looksExr(bytes) ? kExrWorker : kPictureWorker;
+	std::string defect;
+	if ((looksOurs(bytes) || looksPng(bytes)) && decodeBy(worker, false, bytes, name, limits, image, defect))
 	{
+		return image;
+	}
+	if (!hasWorker(kImageWorker))
+	{
+		if (!decodeBy(worker, true, bytes, name, limits, image, defect))
+		{
+			refuseDeclined(name, defect);
+		}
 		return image;
 	}
 	isolate(
@@ -256,9 +292,16 @@ Image decodeImage(std::string_view bytes, const std::string& name)
 std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all, std::size_t max_texels)
 {
 	AlphaDecoder decoder(pictures, all, max_texels);
-	decoder.askBy(kPngWorker, [](const EncodedAlpha& picture)
-				  { return looksPng(picture.path.empty() ? picture.bytes : beginOf(picture.path)); });
-	decoder.askBy(kImageWorker, [](const EncodedAlpha& /*picture*/) { return true; });
+	const auto isExr = [](const EncodedAlpha& picture)
+	{
+		return looksExr(picture.path.empty() ? picture.bytes : beginOf(picture.path));
+	};
+	decoder.askBy(kExrWorker, isExr);
+	decoder.askBy(kPictureWorker, [&](const EncodedAlpha& picture) { return !isExr(picture); });
+	if (!decoder.isDone() && hasWorker(kImageWorker))
+	{
+		decoder.askBy(kImageWorker, [](const EncodedAlpha& /*picture*/) { return true; });
+	}
 	return decoder.takeImages();
 }
 

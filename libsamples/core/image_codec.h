@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Protocol between core/image.cpp and the workers that link OpenImageIO, OpenEXR and libpng (core/image_worker.cpp,
-// core/exr_worker.cpp, core/png_worker.cpp). OpenImageIO brings some 250 libraries, which take thirty times as long to load as the
-// rest of nook, so its worker starts only for a picture that the others decline, and is then kept.
+// Protocol between core/image.cpp and the workers: core/exr_worker.cpp (OpenEXR), core/picture_worker.cpp (libpng, libjpeg)
+// and core/image_worker.cpp (OpenImageIO). OpenImageIO brings some 250 libraries, which take thirty times as long to load as the
+// rest of nook and may be missing, so its worker starts only for a picture that the others decline, and is then kept.
 #pragma once
 
 #include "core/image.h"
 #include "core/value_stream.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,11 +21,12 @@ namespace nook
 
 inline constexpr const char* kImageWorker = "nook_image_worker";
 inline constexpr const char* kExrWorker = "nook_exr_worker";
-inline constexpr const char* kPngWorker = "nook_png_worker";
+inline constexpr const char* kPictureWorker = "nook_picture_worker";
 inline constexpr const char* kEncode = "encode"; // ImageToEncode and its pixels → file bytes; kExrWorker only
-// A name (for kImageWorker) and file bytes → Image. The other two workers first answer whether they accept the file.
+// For kImageWorker: a name and file bytes → Image. For the others: whether to decode all files that they can, or only the common
+// ones that they are known to read as OpenImageIO does, notes included; a name and file bytes → Decoded<Image>.
 inline constexpr const char* kDecode = "decode";
-// AlphaRequest → for each picture, whether it is accepted (kImageWorker accepts all), and an AlphaImage.
+// AlphaRequest → Decoded<AlphaImage> for each picture; kImageWorker declines none.
 inline constexpr const char* kDecodeAlphas = "decode alphas";
 
 inline constexpr std::size_t kMostNames = 10000; // OpenImageIO takes quadratic time in their number
@@ -49,13 +52,23 @@ void send(const Image& image, ValueWriter& to);
 void send(const EncodedAlpha& mask, ValueWriter& to);
 void send(const AlphaImage& image, ValueWriter& to);
 
-// Sends whether the worker accepts the file, then the value.
-template <class T> void send(const std::optional<T>& taken, ValueWriter& to)
+// A picture, or why the worker declines it: the defect of a broken file, or nothing for a kind of file that it does not read.
+template <class T> struct Decoded
 {
-	to.value(taken.has_value());
-	if (taken)
+	std::optional<T> image;
+	std::string defect;
+};
+
+template <class T> void send(const Decoded<T>& decoded, ValueWriter& to)
+{
+	to.value(decoded.image.has_value());
+	if (decoded.image)
 	{
-		send(*taken, to);
+		send(*decoded.image, to);
+	}
+	else
+	{
+		to.text(decoded.defect);
 	}
 }
 
@@ -66,23 +79,52 @@ struct AlphaRequest
 	std::vector<EncodedAlpha> pictures;
 };
 
-void receive(AlphaRequest& request, ValueReader& from);
 void receive(ImageToEncode& image, ValueReader& from);
 void receive(Image& image, ValueReader& from);
 void receive(EncodedAlpha& mask, ValueReader& from);
 void receive(AlphaImage& image, ValueReader& from);
+
+// kDecodeAlphas of a worker that decodes one picture with `decode`.
+using DecodeAlpha = Decoded<AlphaImage> (*)(std::string_view bytes, const EncodedAlpha& picture, std::size_t max_texels);
+void answerAlphas(ValueReader& from, ValueWriter& answer, DecodeAlpha decode);
+
+// The number of texels. Throws Error (invalid_input) if there are none, more than `most`, or too many values; `option` changes the
+// limit.
+std::size_t checkedTexels(int width_px, int height_px, int channels, std::size_t most, const std::string& name,
+						  const char* option = " (max-texels)");
+
+inline bool looksPng(std::string_view bytes)
+{
+	return bytes.starts_with("\x89PNG\r\n\x1A\n");
+}
+
+inline bool looksExr(std::string_view bytes)
+{
+	return bytes.starts_with("\x76\x2F\x31\x01");
+}
+
+// Of ASCII letters.
+inline char lowerCase(char c)
+{
+	return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+// A value in 0…1 as 8 bits, rounded as OpenImageIO does.
+inline uint8_t byteOf(float value)
+{
+	return value > 0.0F ? static_cast<uint8_t>(std::min(value * 255.0F + 0.5F, 255.0F)) : uint8_t{0};
+}
 
 // Reads opacity from uncompressed KTX2 files, such as `ktx transcode --target rgba8` makes from Basis Universal.
 
 // True if the bytes begin like a KTX2 file.
 bool isKtx2(std::string_view bytes);
 
-// Reads the largest level of a 2D texture with 8 bits per channel. `name` appears in errors. Throws Error: unsupported for
-// compressed texels, naming the command that decompresses them; invalid_input if the file is truncated or has more than
-// `max_texels`.
-AlphaImage alphaOfKtx2(std::string_view bytes, const std::string& name, MaskChannel channel, std::size_t max_texels);
+// Reads the largest level of a 2D texture with 8 bits per channel. Throws Error: unsupported for compressed texels, naming the
+// command that decompresses them; invalid_input if the file is truncated or has more than `max_texels`.
+Decoded<AlphaImage> alphaOfKtx2(std::string_view bytes, const EncodedAlpha& picture, std::size_t max_texels);
 
-// Locates the opacity channel of a picture in a texel and reads it. Shared by the image workers.
+// Locates the opacity channel of a picture in a texel and reads it.
 
 // Channels [first, first + count) of a texel: one, or three for luminance; none if fully opaque.
 struct ChannelPlace
@@ -91,26 +133,28 @@ struct ChannelPlace
 	int count = 0;
 };
 
-// `colours` is the number of channels before alpha; `alpha` is its index, or -1.
-inline ChannelPlace placeOf(MaskChannel channel, int colours, int alpha)
+struct PictureSize
 {
-	const int colour = static_cast<int>(channel) - static_cast<int>(MaskChannel::red);
-	switch (channel)
-	{
-	case MaskChannel::alpha: return {alpha, alpha >= 0 ? 1 : 0};
-	case MaskChannel::alpha_or_first: return {alpha >= 0 ? alpha : 0, 1};
-	case MaskChannel::luminance: return {0, colours >= 3 ? 3 : 1};
-	case MaskChannel::red:
-	case MaskChannel::green:
-	case MaskChannel::blue: break;
-	}
-	return {colour < colours ? colour : 0, 1};
-}
+	int width_px = 0;
+	int height_px = 0;
+	int channels = 0;
+	int alpha = -1; // index of the channel of opacity
+};
 
-// `at` points to the first of these channels, 8 bits each. ITU-R BT.709 item 3.2.
-inline uint8_t maskValue(const uint8_t* at, ChannelPlace place)
+// The opacities of a picture. `read` gets the next row's values of that place, 8 bits each; where it returns false, there is
+// nothing. It is not called for an opaque picture. Throws as checkedTexels().
+using ReadRow = std::function<bool(ChannelPlace place, std::vector<uint8_t>& values)>;
+std::optional<AlphaImage> readAlpha(const PictureSize& size, const EncodedAlpha& picture, std::size_t max_texels,
+									const ReadRow& read);
+
+inline uint64_t littleEndian(std::string_view bytes, std::size_t at, std::size_t size)
 {
-	return place.count < 3 ? at[0] : static_cast<uint8_t>((2126U * at[0] + 7152U * at[1] + 722U * at[2] + 5000U) / 10000U);
+	uint64_t number = 0;
+	for (std::size_t i = 0; i < size; ++i)
+	{
+		number |= uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8U * i);
+	}
+	return number;
 }
 
 } // namespace nook

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <optional>
 
 namespace nook
 {
@@ -56,36 +55,19 @@ void takeAttributes(Image& image, const OIIO::ImageSpec& spec)
 	}
 }
 
-struct TexelLimit
-{
-	std::size_t texels = kMaxTexels;
-	const char* option = ""; // option that changes the limit
-};
-
-// Rejects what is not a picture, or has too many values.
-void checkSize(const OIIO::ImageSpec& spec, int channels, const std::string& name, const TexelLimit& most)
+void checkFlat(const OIIO::ImageSpec& spec, const std::string& name)
 {
 	if (spec.deep || spec.depth > 1)
 	{
 		refuse(name, spec.deep ? "a deep image" : "a volume");
-	}
-	if (spec.width > 0 && spec.height > 0 && spec.image_pixels() > most.texels)
-	{
-		throw Error(ExitCode::invalid_input, name + ": found " + std::to_string(spec.image_pixels()) +
-												 " texels, expected at most " + std::to_string(most.texels) + most.option);
-	}
-	if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 ||
-		spec.image_pixels() > kMaxImageValues / static_cast<std::size_t>(std::max(channels, 1)))
-	{
-		refuse(name, std::to_string(spec.width) + "x" + std::to_string(spec.height) + " pixels of " +
-						 std::to_string(spec.nchannels) + " channels");
 	}
 }
 
 Image taken(OIIO::ImageInput& input, const std::string& name)
 {
 	const OIIO::ImageSpec& spec = input.spec();
-	checkSize(spec, spec.nchannels, name, {});
+	checkFlat(spec, name);
+	const std::size_t texels = checkedTexels(spec.width, spec.height, spec.nchannels, kMaxTexels, name, "");
 	Image image;
 	image.width_px = spec.width;
 	image.height_px = spec.height;
@@ -96,7 +78,7 @@ Image taken(OIIO::ImageInput& input, const std::string& name)
 	{
 		image.halves.push_back(spec.channelformat(channel) == OIIO::TypeDesc::HALF ? 1 : 0);
 	}
-	image.values.resize(static_cast<std::size_t>(spec.image_pixels()) * static_cast<std::size_t>(spec.nchannels));
+	image.values.resize(texels * static_cast<std::size_t>(spec.nchannels));
 	takeAttributes(image, spec);
 	if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data()))
 	{
@@ -137,47 +119,40 @@ void decode(ValueReader& request, ValueWriter& answer)
 	withDecoder(bytes, name, [&](OIIO::ImageInput& input) { send(taken(input, name), answer); });
 }
 
-AlphaImage alphaOf(OIIO::ImageInput& input, const EncodedAlpha& picture, std::size_t max_texels)
+std::optional<AlphaImage> alphaOf(OIIO::ImageInput& input, const EncodedAlpha& picture, std::size_t max_texels)
 {
 	const OIIO::ImageSpec& spec = input.spec();
-	checkSize(spec, 1, picture.name, {max_texels, " (max-texels)"});
-	AlphaImage image{spec.width, spec.height, {}};
-	image.alpha.resize(static_cast<std::size_t>(spec.image_pixels()), 255);
-	const ChannelPlace place = placeOf(picture.channel, spec.nchannels - (spec.alpha_channel >= 0 ? 1 : 0),
-									   spec.alpha_channel >= 0 ? spec.alpha_channel : -1);
-	const auto count = static_cast<std::size_t>(place.count);
-	std::vector<uint8_t> several(count > 1 ? count * image.alpha.size() : 0);
-	uint8_t* const read = count > 1 ? several.data() : image.alpha.data();
-	if (count > 0 && !input.read_image(0, 0, place.first, place.first + place.count, OIIO::TypeDesc::UINT8, read))
+	checkFlat(spec, picture.name);
+	std::vector<uint8_t> all;
+	auto next = all.begin();
+	const auto readRow = [&](ChannelPlace place, std::vector<uint8_t>& values)
 	{
-		refuse(picture.name, input.geterror());
-	}
-	for (std::size_t i = 0; i * count < several.size(); ++i)
-	{
-		image.alpha[i] = maskValue(several.data() + i * count, place);
-	}
-	return image;
+		if (all.empty())
+		{
+			all.assign(values.size() * static_cast<std::size_t>(spec.height), 255); // GIF leaves opacity as it is
+			next = all.begin();
+			if (!input.read_image(0, 0, place.first, place.first + place.count, OIIO::TypeDesc::UINT8, all.data()))
+			{
+				refuse(picture.name, input.geterror());
+			}
+		}
+		std::copy_n(next, values.size(), values.begin());
+		next += static_cast<std::ptrdiff_t>(values.size());
+		return true;
+	};
+	return readAlpha({spec.width, spec.height, spec.nchannels, spec.alpha_channel}, picture, max_texels, readRow);
+}
+
+Decoded<AlphaImage> decodedAlpha(std::string_view bytes, const EncodedAlpha& picture, std::size_t max_texels)
+{
+	Decoded<AlphaImage> answer;
+	withDecoder(bytes, picture.name, [&](OIIO::ImageInput& input) { answer.image = alphaOf(input, picture, max_texels); });
+	return answer;
 }
 
 void decodeAlphas(ValueReader& from, ValueWriter& answer)
 {
-	AlphaRequest request;
-	receive(request, from);
-	for (const EncodedAlpha& picture : request.pictures)
-	{
-		const std::string read = picture.path.empty() ? std::string() : readFile(picture.path);
-		const std::string_view bytes = picture.path.empty() ? picture.bytes : read;
-		std::optional<AlphaImage> image;
-		if (isKtx2(bytes))
-		{
-			image = alphaOfKtx2(bytes, picture.name, picture.channel, request.max_texels);
-		}
-		else
-		{
-			withDecoder(bytes, picture.name, [&](OIIO::ImageInput& input) { image = alphaOf(input, picture, request.max_texels); });
-		}
-		send(image, answer);
-	}
+	answerAlphas(from, answer, decodedAlpha);
 }
 
 } // namespace

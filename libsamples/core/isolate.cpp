@@ -372,6 +372,20 @@ const char* reasonOf(int status)
 
 } // namespace
 
+bool hasWorker(const char* program)
+{
+	try
+	{
+		std::unique_ptr<WorkerProcess> kept = keptWorkers().take(program);
+		keptWorkers().put(program, kept != nullptr ? std::move(kept) : std::make_unique<WorkerProcess>(program));
+		return true;
+	}
+	catch (const Error&)
+	{
+		return false;
+	}
+}
+
 void isolate(const Isolated& what, const std::string& name, const std::optional<IsolationLimits>& limits,
 			 const std::function<void(ValueWriter&)>& ask, const std::function<void(ValueReader&)>& take)
 {

@@ -40,6 +40,9 @@ struct Isolated
 void isolate(const Isolated& what, const std::string& name, const std::optional<IsolationLimits>& limits,
 			 const std::function<void(ValueWriter&)>& ask, const std::function<void(ValueReader&)>& take);
 
+// False if that worker, or a library that it links, is missing, or it cannot start for another reason. The worker is kept.
+bool hasWorker(const char* program);
+
 // main() of a worker program: receives requests of isolate() with their limits and returns values.
 
 struct WorkerFunction

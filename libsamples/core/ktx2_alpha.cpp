@@ -35,16 +35,6 @@ constexpr std::array<PlainFormat, 12> kPlainFormats{{{9, 1},
 													 {44, 4},
 													 {50, 4}}}; // B8G8R8A8
 
-uint64_t numberAt(std::string_view bytes, std::size_t at, std::size_t size)
-{
-	uint64_t number = 0;
-	for (std::size_t i = 0; i < size; ++i)
-	{
-		number |= uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8U * i);
-	}
-	return number;
-}
-
 [[noreturn]] void refuse(const std::string& name, const std::string& found, const std::string& expected)
 {
 	throw Error(ExitCode::invalid_input, name + ": KTX2: found " + found + ", expected " + expected);
@@ -63,8 +53,8 @@ std::string schemeName(uint64_t scheme, uint64_t format)
 
 std::size_t channelsOf(std::string_view bytes, const std::string& name)
 {
-	const uint64_t format = numberAt(bytes, 12, 4);
-	const uint64_t scheme = numberAt(bytes, 44, 4);
+	const uint64_t format = littleEndian(bytes, 12, 4);
+	const uint64_t scheme = littleEndian(bytes, 44, 4);
 	const auto* const plain =
 		std::find_if(kPlainFormats.begin(), kPlainFormats.end(), [&](const PlainFormat& known) { return known.code == format; });
 	if (scheme != 0 || plain == kPlainFormats.end())
@@ -83,18 +73,19 @@ bool isKtx2(std::string_view bytes)
 	return bytes.starts_with(kIdentifier);
 }
 
-AlphaImage alphaOfKtx2(std::string_view bytes, const std::string& name, MaskChannel channel, std::size_t max_texels)
+Decoded<AlphaImage> alphaOfKtx2(std::string_view bytes, const EncodedAlpha& picture, std::size_t max_texels)
 {
+	const std::string& name = picture.name;
 	if (bytes.size() < kHeader + kLevel)
 	{
 		refuse(name, std::to_string(bytes.size()) + " bytes", "at least " + std::to_string(kHeader + kLevel));
 	}
 	const std::size_t channels = channelsOf(bytes, name);
-	const uint64_t width = numberAt(bytes, 20, 4);
-	const uint64_t height = numberAt(bytes, 24, 4);
-	const uint64_t depth = numberAt(bytes, 28, 4);
-	const uint64_t layers = numberAt(bytes, 32, 4);
-	const uint64_t faces = numberAt(bytes, 36, 4);
+	const uint64_t width = littleEndian(bytes, 20, 4);
+	const uint64_t height = littleEndian(bytes, 24, 4);
+	const uint64_t depth = littleEndian(bytes, 28, 4);
+	const uint64_t layers = littleEndian(bytes, 32, 4);
+	const uint64_t faces = littleEndian(bytes, 36, 4);
 	if (width < 1 || height < 1 || depth > 0 || layers > 1 || faces != 1)
 	{
 		refuse(name,
@@ -107,8 +98,8 @@ AlphaImage alphaOfKtx2(std::string_view bytes, const std::string& name, MaskChan
 		throw Error(ExitCode::invalid_input, name + ": found " + std::to_string(width) + "x" + std::to_string(height) +
 												 " texels, expected at most " + std::to_string(max_texels) + " (max-texels)");
 	}
-	const uint64_t offset = numberAt(bytes, kHeader, 8);
-	const uint64_t length = numberAt(bytes, kHeader + 8, 8);
+	const uint64_t offset = littleEndian(bytes, kHeader, 8);
+	const uint64_t length = littleEndian(bytes, kHeader + 8, 8);
 	const uint64_t texels = width * height;
 	if (length < texels * channels || offset > bytes.size() || length > bytes.size() - offset)
 	{
@@ -117,24 +108,24 @@ AlphaImage alphaOfKtx2(std::string_view bytes, const std::string& name, MaskChan
 				   std::to_string(bytes.size()),
 			   std::to_string(texels * channels) + " bytes of it");
 	}
-	AlphaImage image{static_cast<int>(width), static_cast<int>(height), {}};
-	image.alpha.assign(static_cast<std::size_t>(texels), 255);
-	const int colours = channels == 4 ? 3 : static_cast<int>(channels);
-	const ChannelPlace place = placeOf(channel, colours, channels == 4 ? 3 : -1);
-	const uint64_t format = numberAt(bytes, 12, 4);
+	const uint64_t format = littleEndian(bytes, 12, 4);
 	const bool blue_first = format == 30 || format == 36 || format == 44 || format == 50; // B8G8R8 and B8G8R8A8
-	const auto* const level = reinterpret_cast<const uint8_t*>(bytes.data() + offset);
-	for (std::size_t i = 0; i < image.alpha.size() && place.count > 0; ++i)
+	const auto* texel = reinterpret_cast<const uint8_t*>(bytes.data() + offset);
+	const auto readRow = [&](ChannelPlace place, std::vector<uint8_t>& values)
 	{
-		std::array<uint8_t, 4> texel{};
-		std::copy_n(level + i * channels, channels, texel.begin());
-		if (blue_first)
+		for (auto value = values.begin(); value != values.end(); texel += channels)
 		{
-			std::swap(texel[0], texel[2]);
+			for (int channel = place.first; channel < place.first + place.count; ++channel)
+			{
+				*value++ = texel[blue_first && channel < 3 ? 2 - channel : channel];
+			}
 		}
-		image.alpha[i] = maskValue(texel.data() + place.first, place);
-	}
-	return image;
+		return true;
+	};
+	const int count = static_cast<int>(channels);
+	return {
+		readAlpha({static_cast<int>(width), static_cast<int>(height), count, count == 4 ? 3 : -1}, picture, max_texels, readRow),
+		{}};
 }
 
 } // namespace nook

@@ -1,0 +1,56 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Builds every artefact of a release into a folder, with SHA256SUMS, TESTED (where each was tried by this script, or why not) and NOTES
+# (the first section of CHANGELOG.md). A preset whose compiler is missing is left out, with a line in TESTED.
+# usage: release.sh FOLDER
+set -eu
+[ $# -eq 1 ] || { echo "release.sh: found '$*', expected FOLDER" >&2; exit 1; }
+mkdir -p "$1"
+out=$(realpath "$1")
+cd "$(dirname "$(realpath "$0")")/.."
+[ -z "$(ls "$out")" ] || { echo "release.sh: $out: found files, expected an empty folder" >&2; exit 3; }
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+# built PRESET OPTIONS...: whether that preset can be built here; builds it.
+built()
+{
+	cmake --preset "$@" >"$scratch/log" 2>&1 && cmake --build --preset "$1" >"$scratch/log" 2>&1 && return
+	echo "$1: not built: $(grep -m 1 -i 'error' "$scratch/log" || tail -n 1 "$scratch/log")" >>"$out/TESTED"
+	return 1
+}
+
+# tested FILES WHERE COMMAND...
+tested()
+{
+	files=$1
+	where=$2
+	shift 2
+	"$@" >"$scratch/log" 2>&1 && { echo "$files: $where" >>"$out/TESTED"; return; }
+	echo "$files: not tested: $where: $(tail -n 1 "$scratch/log")" >>"$out/TESTED"
+}
+
+system=$(. /etc/os-release && echo "$PRETTY_NAME")
+if built release; then
+	packaging/portable.sh build/release "$out"
+	tested "nook-*-linux-x86_64.tar.xz" "an empty root on $system" sh tests/portable_test.sh "$PWD/build/release/tools/nook" . build/release
+	(cd build/release && cpack -G DEB -B "$out" >/dev/null)
+	rm -rf "$out/_CPack_Packages"
+	tested "nook_*.deb, libnook-dev_*.deb" "lintian and an empty root on $system" sh tests/debian_test.sh "$PWD/build/release/tools/nook" . build/release
+fi
+if built aarch64 -DCMAKE_EXE_LINKER_FLAGS=-static; then
+	packaging/portable.sh build/aarch64 "$out"
+	tested "nook-*-linux-aarch64.tar.xz" "QEMU on $system" sh tests/targets_test.sh "$PWD/build/release/tools/nook" . build/targets aarch64
+fi
+if built windows; then
+	(cd build/windows && cpack -G ZIP -B "$out" >/dev/null)
+	rm -rf "$out/_CPack_Packages"
+	tested "nook-*-windows-x86_64.zip" "Wine on $system" sh tests/targets_test.sh "$PWD/build/release/tools/nook" . build/targets windows
+fi
+if built wasm; then
+	(cd build/wasm/npm && npm pack --pack-destination "$out" >/dev/null 2>&1)
+	tested "nook-patterns-*.tgz" "Node.js on $system" sh tests/targets_test.sh "$PWD/build/release/tools/nook" . build/targets wasm
+fi
+awk '/^## / { if (found++) exit } found' CHANGELOG.md >"$out/NOTES"
+(cd "$out" && for file in *; do [ "$file" = TESTED ] || [ "$file" = NOTES ] || sha256sum "$file"; done >"$scratch/sums" && mv "$scratch/sums" SHA256SUMS)
+cat "$out/TESTED"

@@ -11,6 +11,8 @@
 #include "scene/level_glb.h"
 #include "scene/load_parts.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -19,7 +21,10 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <memory>
+#include <numeric>
+#include <tuple>
 #include <unordered_set>
 
 namespace nook
@@ -58,7 +63,8 @@ void checkReadable(const std::string& path)
 }
 
 Level readLevel(const std::string& path, const LoadSettings& settings, std::vector<Finding>& findings,
-				std::optional<uint32_t> second_set = {}, std::vector<glm::vec2>* second_uvs = nullptr)
+				std::optional<uint32_t> second_set = {}, std::vector<glm::vec2>* second_uvs = nullptr,
+				std::vector<GltfPlace>* places = nullptr)
 {
 	checkReadable(path);
 	const std::string ending = endingOf(path);
@@ -98,7 +104,21 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 	{
 		*second_uvs = std::move(source.second_uvs);
 	}
+	if (places != nullptr)
+	{
+		*places = std::move(source.places);
+	}
 	return level;
+}
+
+// Cleans a level that was read again along with `second`.
+void cleanAgain(Level& again, const std::string& name, const Level& level, std::vector<glm::vec2>& second, const RunSettings& run)
+{
+	cleanLevel(again, silent(run), &second);
+	if (again.positions != level.positions) // triangles may be flipped by now (bake/bake.h)
+	{
+		throw Error(ExitCode::invalid_input, name + ": found other vertices when reading it again, expected an unchanged file");
+	}
 }
 
 // Texture coordinates, or the values in their place; empty if no vertex has any.
@@ -108,14 +128,48 @@ std::vector<glm::vec2> secondSet(const std::string& name, const LoadSettings& se
 	std::vector<Finding> findings;
 	std::vector<glm::vec2> second;
 	Level again = readLevel(name, settings, findings, set, &second);
-	cleanLevel(again, silent(run), &second);
-	if (again.positions != level.positions) // triangles may be flipped by now (bake/bake.h)
-	{
-		throw Error(ExitCode::invalid_input, name + ": found other vertices when reading it again, expected an unchanged file");
-	}
+	cleanAgain(again, name, level, second, run);
 	const bool none = std::all_of(second.begin(), second.end(), [](glm::vec2 uv) { return std::isnan(uv.x); });
 	return none ? std::vector<glm::vec2>{} : second;
 }
+
+// Finds the level's vertex at a position whose normal is nearest.
+class VerticesAt
+{
+public:
+	explicit VerticesAt(const Level& level) : m_level(level), m_order(level.positions.size())
+	{
+		std::iota(m_order.begin(), m_order.end(), 0U);
+		std::sort(m_order.begin(), m_order.end(),
+				  [&](uint32_t a, uint32_t b) { return isBefore(level.positions[a], level.positions[b]); });
+	}
+
+	uint32_t nearest(glm::dvec3 position, glm::vec3 normal) const // UINT32_MAX: none
+	{
+		auto at = std::lower_bound(m_order.begin(), m_order.end(), position,
+								   [this](uint32_t a, glm::dvec3 b) { return isBefore(m_level.positions[a], b); });
+		uint32_t found = UINT32_MAX;
+		float best = -std::numeric_limits<float>::infinity();
+		for (; at != m_order.end() && m_level.positions[*at] == position; ++at)
+		{
+			if (const float along = glm::dot(m_level.normals[*at], normal); found == UINT32_MAX || along > best)
+			{
+				best = along;
+				found = *at;
+			}
+		}
+		return found;
+	}
+
+private:
+	static bool isBefore(glm::dvec3 a, glm::dvec3 b)
+	{
+		return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+	}
+
+	const Level& m_level;
+	std::vector<uint32_t> m_order;
+};
 
 // Not yet cleaned; adds findings from reading.
 Level readNamed(const std::string& name, const LoadSettings& settings, std::vector<Finding>& findings)
@@ -397,7 +451,7 @@ LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& 
 }
 
 std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings& settings, const Level& level,
-									 const RunSettings& run)
+									 const RunSettings& run, uint32_t set)
 {
 	const std::string ending = endingOf(name);
 	if (name.starts_with(kBuiltinPrefix) || (ending != ".gltf" && ending != ".glb"))
@@ -405,7 +459,43 @@ std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings
 		return {};
 	}
 	const ProgressCounter stage(run.progress, "texture coordinates");
-	return secondSet(name, settings, level, 1, run);
+	return secondSet(name, settings, level, set, run);
+}
+
+std::vector<GltfPlace> loadPlaces(const std::string& name, const LoadSettings& settings, const Level& level, const RunSettings& run)
+{
+	const ProgressCounter stage(run.progress, "places");
+	std::vector<Finding> findings;
+	std::vector<glm::vec2> numbers;
+	std::vector<GltfPlace> places;
+	Level again = readLevel(name, settings, findings, kPlacesSet, &numbers, &places);
+	const std::vector<glm::dvec3> positions = again.positions;
+	const std::vector<glm::vec3> normals = again.normals;
+	cleanAgain(again, name, level, numbers, run);
+	std::vector<uint32_t> now(positions.size(), UINT32_MAX);
+	for (std::size_t i = 0; i < numbers.size(); ++i)
+	{
+		now[(static_cast<std::size_t>(numbers[i].x) << 14U) + static_cast<std::size_t>(numbers[i].y)] = static_cast<uint32_t>(i);
+	}
+	std::optional<VerticesAt> at;
+	for (GltfPlace& place : places)
+	{
+		for (auto& [of_file, of_level] : place.vertices)
+		{
+			const uint32_t before = of_level;
+			of_level = now[before];
+			if (of_level == UINT32_MAX)
+			{
+				if (!at)
+				{
+					at.emplace(again);
+				}
+				of_level = at->nearest(positions[before], normals[before]);
+			}
+		}
+		std::erase_if(place.vertices, [](const auto& vertex) { return vertex.second == UINT32_MAX; });
+	}
+	return places;
 }
 
 BakedValues loadBakedValues(const std::string& path, const Level& level, const RunSettings& run)

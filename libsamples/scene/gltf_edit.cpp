@@ -147,6 +147,7 @@ public:
 		{
 			gather();
 		}
+		dropEmpty(m_json);
 		m_before = m_json;
 		m_view_before = items("bufferViews").size();
 		readChannels();
@@ -205,13 +206,7 @@ public:
 		{
 			items("buffers").push_back({{"byteLength", data.size()}, {"uri", dataUri(data)}});
 		}
-		for (const std::string& list : m_created)
-		{
-			if (m_json[list].empty())
-			{
-				m_json.erase(list);
-			}
-		}
+		dropEmpty(m_json);
 		const Document undo = Document::diff(m_json, m_before);
 		rebase(output);
 		if (!m_bake.record.is_null())
@@ -223,7 +218,8 @@ public:
 		}
 		const bool lines = m_file.text.find('\n') < m_file.text.size() - 1; // some programs end their one line
 		return m_to_binary ? glbContainer(jsonLine(m_json), chunk(), m_file.others, m_file.path)
-						   : m_json.dump(lines ? 1 : -1, '\t', false, Document::error_handler_t::replace) + "\n";
+			   : lines     ? jsonFile(m_json)
+						   : jsonLine(m_json) + "\n";
 	}
 
 private:
@@ -236,12 +232,24 @@ private:
 	Document& items(const char* name)
 	{
 		Document& list = m_json[name];
-		if (list.is_null())
-		{
-			list = Document::array();
-			m_created.insert(name);
-		}
+		list = list.is_null() ? Document::array() : std::move(list);
 		return list;
+	}
+
+	// glTF has no empty lists: they are what items() made, or what is left of extensions.
+	static void dropEmpty(Document& json)
+	{
+		for (auto at = json.begin(); at != json.end();)
+		{
+			if (at->is_array() && at->empty() && at.key() != "extras")
+			{
+				at = json.erase(at);
+			}
+			else
+			{
+				++at;
+			}
+		}
 	}
 
 	Document& primitiveOf(std::size_t mesh, std::size_t primitive)
@@ -300,46 +308,25 @@ private:
 			fail("asset.extras.nook.undo", "no patch of this file", "what nook bake wrote");
 		}
 		m_earlier.clear();
-		m_created.clear();
-		checkUndone();
-	}
-
-	// The patch may be anybody's. What it makes is read like a file.
-	void checkUndone()
-	{
-		GltfFile undone;
-		undone.path = m_file.path;
-		undone.settings = m_file.settings;
-		undone.is_binary = m_file.is_binary;
-		undone.has_chunk = m_file.has_chunk;
-		undone.chunk = m_file.chunk;
-		undone.text = jsonLine(m_json);
-		undone.others = m_file.others;
-		undone.json = nlohmann::json::parse(undone.text);
-		checkGltf(undone);
-		undone.text = std::move(m_file.text);
-		m_file = std::move(undone);
+		m_file.json = nlohmann::json::parse(jsonLine(m_json)); // anybody may have written the patch
+		m_file.buffers.clear();
+		checkGltf(m_file);
 	}
 
 	void decompress()
 	{
 		constexpr std::array<const char*, 2> kNames{"KHR_draco_mesh_compression", "EXT_meshopt_compression"};
-		const auto isCompression = [&](const Document& name)
-		{
-			return name == kNames[0] || name == kNames[1];
-		};
 		for (const char* const list : {"extensionsUsed", "extensionsRequired"})
 		{
 			Document& names = items(list);
-			for (auto at = names.begin(); at != names.end();)
+			for (const char* const name : kNames)
 			{
-				const bool draco = *at == kNames[0];
-				m_compression = draco ? "draco" : m_compression.empty() && isCompression(*at) ? "meshopt" : m_compression;
-				at = isCompression(*at) ? names.erase(at) : at + 1;
-			}
-			if (names.empty())
-			{
-				m_json.erase(list);
+				const auto found = std::find(names.begin(), names.end(), name);
+				if (found != names.end())
+				{
+					m_compression = name == kNames[0] || m_compression == "draco" ? "draco" : "meshopt";
+					names.erase(found);
+				}
 			}
 		}
 		if (m_compression.empty())
@@ -347,14 +334,9 @@ private:
 			return;
 		}
 		nlohmann::json made = m_file.json;
-		made.erase("extensionsUsed");
-		made.erase("extensionsRequired");
 		for (const char* const list : {"extensionsUsed", "extensionsRequired"})
 		{
-			if (m_json.contains(list))
-			{
-				made[list] = m_json[list];
-			}
+			made[list] = m_json.value(list, Document::array());
 		}
 		follow(m_json, made);
 		for (Document& view : items("bufferViews"))
@@ -974,8 +956,7 @@ private:
 	bool m_gathered = false; // all views are in one buffer:
 	std::string m_gathered_bytes;
 	std::string m_compression;
-	std::string m_earlier;           // target of an earlier bake that is still there
-	std::set<std::string> m_created; // lists that the file did not have
+	std::string m_earlier; // target of an earlier bake that is still there
 
 	std::vector<Channel> m_channels;
 	std::size_t m_width = 0; // numbers of all channels
@@ -1066,7 +1047,7 @@ std::string placeValues(std::span<const GltfPlace> places, std::span<const float
 		{
 			if (ending == ".csv")
 			{
-				csv += (i % sides == 0 ? head + std::to_string(i / sides) : "") + "," + numberText(values[i]) +
+				csv += (i % sides == 0 ? head + std::to_string(i / sides) : "") + "," + shortestDecimal(values[i]) +
 					   ((i + 1) % sides == 0 ? "\n" : "");
 			}
 			appendRaw(raw, values[i]);

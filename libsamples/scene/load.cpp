@@ -11,7 +11,9 @@
 #include "scene/level_glb.h"
 #include "scene/load_parts.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <array>
@@ -21,10 +23,8 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <limits>
+#include <map>
 #include <memory>
-#include <numeric>
-#include <tuple>
 #include <unordered_set>
 
 namespace nook
@@ -132,44 +132,6 @@ std::vector<glm::vec2> secondSet(const std::string& name, const LoadSettings& se
 	const bool none = std::all_of(second.begin(), second.end(), [](glm::vec2 uv) { return std::isnan(uv.x); });
 	return none ? std::vector<glm::vec2>{} : second;
 }
-
-// Finds the level's vertex at a position whose normal is nearest.
-class VerticesAt
-{
-public:
-	explicit VerticesAt(const Level& level) : m_level(level), m_order(level.positions.size())
-	{
-		std::iota(m_order.begin(), m_order.end(), 0U);
-		std::sort(m_order.begin(), m_order.end(),
-				  [&](uint32_t a, uint32_t b) { return isBefore(level.positions[a], level.positions[b]); });
-	}
-
-	uint32_t nearest(glm::dvec3 position, glm::vec3 normal) const // UINT32_MAX: none
-	{
-		auto at = std::lower_bound(m_order.begin(), m_order.end(), position,
-								   [this](uint32_t a, glm::dvec3 b) { return isBefore(m_level.positions[a], b); });
-		uint32_t found = UINT32_MAX;
-		float best = -std::numeric_limits<float>::infinity();
-		for (; at != m_order.end() && m_level.positions[*at] == position; ++at)
-		{
-			if (const float along = glm::dot(m_level.normals[*at], normal); found == UINT32_MAX || along > best)
-			{
-				best = along;
-				found = *at;
-			}
-		}
-		return found;
-	}
-
-private:
-	static bool isBefore(glm::dvec3 a, glm::dvec3 b)
-	{
-		return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-	}
-
-	const Level& m_level;
-	std::vector<uint32_t> m_order;
-};
 
 // Not yet cleaned; adds findings from reading.
 Level readNamed(const std::string& name, const LoadSettings& settings, std::vector<Finding>& findings)
@@ -477,20 +439,29 @@ std::vector<GltfPlace> loadPlaces(const std::string& name, const LoadSettings& s
 	{
 		now[(static_cast<std::size_t>(numbers[i].x) << 14U) + static_cast<std::size_t>(numbers[i].y)] = static_cast<uint32_t>(i);
 	}
-	std::optional<VerticesAt> at;
+	std::map<std::array<double, 3>, std::vector<uint32_t>> at; // the level's vertices by position, if any is looked for
+	const auto nearest = [&](glm::dvec3 position, glm::vec3 normal)
+	{
+		for (uint32_t i = 0; at.empty() && i < again.positions.size(); ++i)
+		{
+			at[{again.positions[i].x, again.positions[i].y, again.positions[i].z}].push_back(i);
+		}
+		const std::vector<uint32_t>& there = at[{position.x, position.y, position.z}];
+		const auto further = [&](uint32_t a, uint32_t b)
+		{
+			return glm::dot(again.normals[a], normal) < glm::dot(again.normals[b], normal);
+		};
+		return there.empty() ? UINT32_MAX : *std::max_element(there.begin(), there.end(), further);
+	};
 	for (GltfPlace& place : places)
 	{
 		for (auto& [of_file, of_level] : place.vertices)
 		{
 			const uint32_t before = of_level;
 			of_level = now[before];
-			if (of_level == UINT32_MAX)
+			if (of_level == UINT32_MAX && glm::all(glm::lessThan(glm::abs(positions[before]), glm::dvec3(kFarthest_m))))
 			{
-				if (!at)
-				{
-					at.emplace(again);
-				}
-				of_level = at->nearest(positions[before], normals[before]);
+				of_level = nearest(positions[before], normals[before]);
 			}
 		}
 		std::erase_if(place.vertices, [](const auto& vertex) { return vertex.second == UINT32_MAX; });

@@ -378,7 +378,6 @@ GltfBaked write(const BakeOptions& options, const BakeInput& input, const Level&
 			outputs.push_back(path);
 		}
 	}
-
 	outputs.resize(std::max<std::size_t>(outputs.size(), 1), "-"); // its size is reported in any case
 	std::optional<GltfFile> file;
 	if (input.in_place)

@@ -310,6 +310,7 @@ private:
 		m_earlier.clear();
 		m_file.json = nlohmann::json::parse(jsonLine(m_json)); // anybody may have written the patch
 		m_file.buffers.clear();
+		m_file.decoded.clear();
 		checkGltf(m_file);
 	}
 

@@ -29,7 +29,7 @@ namespace
 using Document = nlohmann::ordered_json;
 
 constexpr const char* kRecord = "nook"; // in asset.extras
-constexpr std::size_t kNone = SIZE_MAX;
+constexpr std::size_t kNoNumber = SIZE_MAX;
 constexpr std::size_t kTries = 64; // sets of values that a primitive is compared with: with all, a forest would take forever
 
 template <class Value> void appendRaw(std::string& bytes, const Value& value)
@@ -42,7 +42,7 @@ void pad(std::string& bytes)
 	bytes.resize((bytes.size() + 3) / 4 * 4, '\0');
 }
 
-std::size_t numberIn(const Document& item, const std::string& field, std::size_t otherwise = kNone)
+std::size_t numberIn(const Document& item, const std::string& field, std::size_t otherwise = kNoNumber)
 {
 	const auto found = item.find(field);
 	return found != item.end() && found->is_number_unsigned() ? found->get<std::size_t>() : otherwise;
@@ -113,7 +113,7 @@ struct ValueGroup
 {
 	std::vector<float> numbers; // of all channels for each vertex; NaN where no triangle uses it
 	bool two_sided = false;
-	std::size_t color = kNone; // accessor of a COLOR_0 to multiply
+	std::size_t color = kNoNumber; // accessor of a COLOR_0 to multiply
 	std::vector<std::pair<std::string, std::size_t>> accessors;
 };
 
@@ -260,7 +260,7 @@ private:
 	Document materialOf(const Document& primitive)
 	{
 		const std::size_t index = numberIn(primitive, "material");
-		return index == kNone ? Document::object() : items("materials")[index];
+		return index == kNoNumber ? Document::object() : items("materials")[index];
 	}
 
 	std::string& chunk()
@@ -316,16 +316,16 @@ private:
 
 	void decompress()
 	{
-		constexpr std::array<const char*, 2> kNames{"KHR_draco_mesh_compression", "EXT_meshopt_compression"};
+		constexpr std::array<const char*, 2> kCompressions{"KHR_draco_mesh_compression", "EXT_meshopt_compression"};
 		for (const char* const list : {"extensionsUsed", "extensionsRequired"})
 		{
 			Document& names = items(list);
-			for (const char* const name : kNames)
+			for (const char* const name : kCompressions)
 			{
 				const auto found = std::find(names.begin(), names.end(), name);
 				if (found != names.end())
 				{
-					m_compression = name == kNames[0] || m_compression == "draco" ? "draco" : "meshopt";
+					m_compression = name == kCompressions[0] || m_compression == "draco" ? "draco" : "meshopt";
 					names.erase(found);
 				}
 			}
@@ -342,13 +342,13 @@ private:
 		follow(m_json, made);
 		for (Document& view : items("bufferViews"))
 		{
-			eraseIn(view, "extensions", kNames[1]);
+			eraseIn(view, "extensions", kCompressions[1]);
 		}
 		for (Document& mesh : items("meshes"))
 		{
 			for (Document& primitive : mesh["primitives"])
 			{
-				eraseIn(primitive, "extensions", kNames[0]);
+				eraseIn(primitive, "extensions", kCompressions[0]);
 				setBounds(numberIn(primitive["attributes"], "POSITION"));
 			}
 		}
@@ -357,7 +357,7 @@ private:
 	// Compression rounds positions, whose bounds an accessor states.
 	void setBounds(std::size_t index)
 	{
-		if (index == kNone || items("accessors")[index]["componentType"] != 5126U)
+		if (index == kNoNumber || items("accessors")[index]["componentType"] != 5126U)
 		{
 			return;
 		}
@@ -492,7 +492,7 @@ private:
 		const Document& attributes = primitive["attributes"];
 		checkTarget(attributes);
 		const bool two_sided = materialOf(primitive).value("doubleSided", false);
-		const std::size_t color = m_colors ? numberIn(attributes, "COLOR_0") : kNone;
+		const std::size_t color = m_colors ? numberIn(attributes, "COLOR_0") : kNoNumber;
 		std::vector<std::size_t>& known = m_groups_of[{numberIn(attributes, "POSITION"), color, two_sided}];
 		for (std::size_t i = known.size() - std::min(known.size(), kTries); i < known.size(); ++i)
 		{
@@ -526,8 +526,8 @@ private:
 	// Throws unless the attribute is free or held a bake.
 	void checkTarget(const Document& attributes)
 	{
-		const std::size_t found = m_attribute.empty() ? kNone : numberIn(attributes, m_attribute);
-		if (found == kNone)
+		const std::size_t found = m_attribute.empty() ? kNoNumber : numberIn(attributes, m_attribute);
+		if (found == kNoNumber)
 		{
 			return;
 		}
@@ -620,7 +620,7 @@ private:
 		std::optional<GltfValues> base;
 		uint64_t component = 5121;
 		std::size_t given = 0;
-		if (group.color != kNone)
+		if (group.color != kNoNumber)
 		{
 			base.emplace(m_file, group.color);
 			component = numberIn(items("accessors")[group.color], "componentType");
@@ -839,7 +839,7 @@ private:
 		items("images").push_back({{"name", "visibility"}, {"mimeType", "image/png"}, {"bufferView", items("bufferViews").size()}});
 		items("bufferViews").push_back(Document::object());
 		m_added.emplace_back(m_bake.png);
-		std::size_t made = kNone; // for primitives without a material
+		std::size_t made = kNoNumber; // for primitives without a material
 		std::set<std::size_t> done;
 		for (const MeshUnit& unit : units)
 		{
@@ -847,12 +847,12 @@ private:
 			{
 				Document& primitive = primitiveOf(unit.mesh, number);
 				const std::size_t before = numberIn(primitive, "material");
-				if (before == kNone && made == kNone)
+				if (before == kNoNumber && made == kNoNumber)
 				{
 					made = items("materials").size();
 					items("materials").push_back(Document::object());
 				}
-				const std::size_t material = before == kNone ? made : before;
+				const std::size_t material = before == kNoNumber ? made : before;
 				primitive["material"] = material;
 				if (done.insert(material).second)
 				{

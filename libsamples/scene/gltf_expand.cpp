@@ -341,8 +341,8 @@ private:
 		m_file.json["bufferViews"][mesh.view] = {{"buffer", addBuffer(m_file, std::string(indices))},
 												 {"byteLength", indices.size()}};
 		const auto& [first_mesh, first] = mesh.primitives.front();
-		const JsonValue primitive = m_file.root().item("meshes", first_mesh).item("primitives", first);
-		std::size_t used = primitive.index("indices", accessors.size()).value_or(accessors.size());
+		const JsonValue coded = m_file.root().item("meshes", first_mesh).item("primitives", first);
+		std::size_t used = coded.index("indices", accessors.size()).value_or(accessors.size());
 		if (used == accessors.size() || accessors[used].contains("bufferView"))
 		{
 			used = accessors.size();

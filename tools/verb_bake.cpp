@@ -38,8 +38,8 @@ constexpr std::array<std::string_view, 3> kBakeFalloffs{"hard", "linear", "alche
 constexpr std::array<std::string_view, 2> kBakeFits{"surface", "points"};                // of BakeFit
 constexpr std::array<std::string_view, 2> kBakeSides{"separate", "mean"};                // of BakeSides
 constexpr std::array<std::string_view, 2> kBakeNormals{"geometric", "interpolated"};     // of NormalKind
-constexpr std::array<std::string_view, 3> kInstances{"separate", "shared", "attribute"}; // of BakeInstances
-constexpr std::array<std::string_view, 6> kTargets{"visibility", "color", "color-alpha", "texcoord", "custom", "texture"};
+constexpr std::array<std::string_view, 3> kBakeInstances{"separate", "shared", "attribute"}; // of BakeInstances
+constexpr std::array<std::string_view, 6> kBakeTargets{"visibility", "color", "color-alpha", "texcoord", "custom", "texture"};
 constexpr int kMostSet = 7;            // of texture coordinates
 constexpr int kStandardTexture = 1024; // texels across
 constexpr std::size_t kCheckPoints = 4096;
@@ -77,12 +77,12 @@ void takeTarget(BakeOptions& options, const std::string& name, const std::string
 {
 	const std::size_t colon = text.find(':');
 	const std::string rest = colon == std::string::npos ? "" : text.substr(colon + 1);
-	const auto word = std::find(kTargets.begin(), kTargets.end(), text.substr(0, colon));
-	const auto target = static_cast<BakeTarget>(word - kTargets.begin());
+	const auto word = std::find(kBakeTargets.begin(), kBakeTargets.end(), text.substr(0, colon));
+	const auto target = static_cast<BakeTarget>(word - kBakeTargets.begin());
 	const bool set = target == BakeTarget::texcoord && rest.size() == 1 && rest[0] >= '0' && rest[0] <= '0' + kMostSet;
 	const bool custom = target == BakeTarget::custom && !rest.empty() && isPlainName(rest);
 	const bool plain = target != BakeTarget::texcoord && target != BakeTarget::custom && colon == std::string::npos;
-	if (word == kTargets.end() || !(set || custom || plain))
+	if (word == kBakeTargets.end() || !(set || custom || plain))
 	{
 		refuseValue(name, text, "visibility, color, color-alpha, texcoord:0 to texcoord:7, custom:NAME or texture");
 	}
@@ -144,7 +144,7 @@ void declare(CLI::App& app, BakeOptions& options)
 		  takesParsed("TARGET", take_target),
 		  "Where the file has it: visibility, an attribute (default), color, color-alpha, texcoord:N, custom:NAME, texture",
 		  {.excludes = {{"--probes"}, {"--volumes", "one of them, since a difference has its own attribute"}}}},
-		 {"--instances", takesChoice(kInstances, options.instances),
+		 {"--instances", takesChoice(kBakeInstances, options.instances),
 		  "A mesh at several nodes: values for each (default), shared: their mean, attribute: their mean and factors",
 		  ofVertices({{"--bent", "separate, since bent normals are of one place"},
 					  {"--max-error", "none, since each place is split by itself"}})},
@@ -192,7 +192,7 @@ void settle(BakeOptions& options)
 	}
 	if (options.texture_px > 0)
 	{
-		options.to = kTargets.back();
+		options.to = kBakeTargets.back();
 		options.target = BakeTarget::texture;
 	}
 	const std::string ending = endingOf(options.level.level);
@@ -250,7 +250,7 @@ void addSettings(Facts& facts, const BakeOptions& options)
 	}
 	if (!probes && !texture)
 	{
-		facts.text("instances", kInstances[static_cast<std::size_t>(options.instances)]);
+		facts.text("instances", kBakeInstances[static_cast<std::size_t>(options.instances)]);
 		facts.text("fit", kBakeFits[static_cast<std::size_t>(settings.fit)]);
 		facts.text("sides", kBakeSides[static_cast<std::size_t>(settings.sides)]);
 	}

@@ -8,12 +8,12 @@ Bakes the visibility of a level while the project builds.
 TARGET   a target of this project; it is built after the files, and finds them by their names
 LEVEL    what nook reads: .gltf .glb .obj .fbx .ply .stl, or builtin:NAME; a path from the current source folder
 RADIUS   length of the rays, metres; inf: without end
-OUTPUT   variable that receives the path of the file, NAME.bake.glb: the level with visibility at its vertices; with PROBES a list of
-         two, NAME.probes.ktx2 and NAME.probes.glsl
+OUTPUT   variable that receives the path of the file, NAME.bake.glb: the level with visibility at its vertices (a glTF as it is, with
+         additions); with PROBES a list of two, NAME.probes.ktx2 and NAME.probes.glsl
 NAME     the level's own where absent; two bakes of one kind for one target need names of their own
 PROBES   spacing of a grid of probes, metres, in place of vertices
 VOLUMES  a file of nook_add_volumes that is drawn as well: what is baked is the difference to it
-OPTIONS  more options of `nook bake`: --rays 64, --bent, --texture 512, ...
+OPTIONS  more options of `nook bake`: --rays 64, --bent, --to color, --texture 512, ...
 
 The files are made again when the level, a file that it names, the volumes, the options or the program change, and not otherwise.
 ]]

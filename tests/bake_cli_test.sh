@@ -2,6 +2,7 @@
 # Usage: bake_cli_test.sh PROGRAM. nook bake: outputs, summaries and errors.
 set -u
 nook=$1
+source=$(cd "$(dirname "$0")/.." && pwd)
 . "$(dirname "$0")/command_line.sh"
 
 works '--fit' bake --help
@@ -189,6 +190,74 @@ LC_ALL=C sed 's/\x00\x00\x80\x3f\x00\x00\x80\x3f\x00\x00\x80\x3f/\x00\x00\x80\x4
 cmp -s kept_b.glb kept_bad.glb && problem "kept_bad.glb: found nothing changed"
 fails 3 'kept_bad.glb: _VISIBILITY: found 4, expected values from 0 to 1' shade kept_still.exr --method bake --bake kept_bad.glb -o v.exr
 there s.json
+# Into a glTF: additions only, twice like once, over itself, and every target.
+cat >kept_two.gltf <<'EOT'
+{
+	"asset": {"version": "2.0", "extras": {"by": "hand"}}, "scene": 0, "scenes": [{"nodes": [1, 0]}],
+	"unknown": [1.50, -0, 1e-7, "\u00e9"], "extensionsUsed": ["EXT_of_nobody"], "extensions": {"EXT_of_nobody": {"b": 1, "a": 2}},
+	"nodes": [{"name": "low", "mesh": 0, "extras": 3}, {"name": "high", "mesh": 0, "translation": [0, 0.25, 0], "scale": [2, 2, 2]}],
+	"materials": [{"doubleSided": true, "occlusionTexture": {"index": 0, "strength": 0.5}}], "textures": [{"source": 0}],
+	"images": [{"uri": "none here.png"}],
+	"meshes": [{"primitives": [{"attributes": {"TEXCOORD_0": 1, "POSITION": 0, "COLOR_0": 2}, "indices": 3, "material": 0}]}],
+	"accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 0, 1]},
+		{"bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC2"},
+		{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+		{"bufferView": 2, "componentType": 5123, "count": 6, "type": "SCALAR"}],
+	"bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 32}, {"buffer": 0, "byteOffset": 80, "byteLength": 12}],
+	"buffers": [{"byteLength": 92, "uri": "kept_two.bin"}]
+}
+EOT
+# A floor of two triangles: its corners, their coordinates, its indices.
+printf '\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\200\077\000\000\200\077\000\000\000\000\000\000\200\077\000\000\200\077\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\200\077\000\000\200\077\000\000\200\077\000\000\200\077\000\000\000\000\000\000\001\000\002\000\000\000\002\000\003\000' >kept_two.bin
+# additions BEFORE AFTER [ATTRIBUTE ...]
+additions()
+{
+	command -v python3 >../stdout || return
+	checks=$((checks + 1))
+	python3 "$source/tests/additions.py" "$@" >../log 2>&1 || problem "additions $*: $(cat ../log)"
+}
+mkdir kept_folder
+works '"shared_meshes": 1' bake kept_two.gltf --radius 1 --rays 32 -o kept_2.gltf -o kept_2.glb -o kept_folder/2.gltf --json -
+additions kept_two.gltf kept_2.gltf
+grep -q '"uri": "../none%20here.png"' kept_folder/2.gltf || problem "kept_folder/2.gltf: found other names than those from there"
+works '' info kept_folder/2.gltf
+works '^baked: visibility, radius 1.0 m, falloff hard, 32 rays' info kept_2.glb
+works '^bake command +nook bake kept_two.gltf --radius 1 --rays 32' info kept_2.gltf
+works '' bake kept_2.glb --radius 1 --rays 32 --to color -o kept_3.glb --json s.json
+works '"mesh_copies": 0' bake kept_3.glb --radius 1 --rays 32 --instances shared -o kept_4.glb --json -
+works '' bake kept_two.gltf --radius 1 --rays 32 -o kept_5.gltf --json s.json
+works '' bake kept_5.gltf --radius 1 --rays 32 --to color-alpha -o kept_6.gltf --json s.json
+works '' bake kept_6.gltf --radius 1 --rays 32 -o kept_6.gltf --json s.json
+checks=$((checks + 1))
+sed 's/kept_[26].gltf/kept_two.gltf/' kept_6.gltf | cmp -s - kept_5.gltf || problem "baking again: found another file than baking once"
+for to in color color-alpha texcoord:1 texcoord:3 custom:AO visibility; do
+	works "\"to\": \"$to\"" bake kept_two.gltf --radius 1 --rays 32 --to $to -o kept_7.gltf --json -
+	additions kept_two.gltf kept_7.gltf COLOR_0
+	works '' info kept_7.gltf
+done
+fails 5 'nodes\[0\].extras: found no object' bake kept_two.gltf --radius 1 --instances attribute -o b.gltf
+sed 's/"extras": 3/"extras": {"a": 3}/' kept_two.gltf >kept_other.gltf
+works '"mesh_copies": 0' bake kept_other.gltf --radius 1 --rays 32 --instances attribute -o kept_7.gltf --json -
+additions kept_other.gltf kept_7.gltf
+checks=$((checks + 1))
+grep -q nook_visibility kept_7.gltf || problem "--instances attribute: found no factor"
+works '' bake kept_two.gltf --radius 1 --rays 32 -o values.csv -o values.npy -o values.json --json s.json
+checks=$((checks + 1))
+[ "$(wc -l <values.csv)" -eq 9 ] || problem "values.csv: found $(wc -l <values.csv) lines, expected two nodes of four vertices"
+there s.json values.csv values.json values.npy
+fails 3 'TEXCOORD_0: found it in use, expected a set that is free, as --to texcoord:1' bake kept_two.gltf --radius 1 --to texcoord:0 -o b.gltf
+sed 's/"COLOR_0"/"_VISIBILITY"/' kept_two.gltf >kept_other.gltf
+fails 3 '_VISIBILITY: found an accessor of VEC3, component type 5126, expected SCALAR' bake kept_other.gltf --radius 1 -o b.gltf
+sed 's/{"by": "hand"}/4/' kept_two.gltf >kept_other.gltf
+fails 5 'asset.extras: found no object' bake kept_other.gltf --radius 1 -o b.gltf
+sed 's/"path": *"/"path": "\/nothing/' kept_5.gltf >kept_other.gltf
+fails 3 'asset.extras.nook.undo: found no patch of this file' bake kept_other.gltf --radius 1 -o b.gltf
+for to in texcoord texcoord:8 custom: 'custom:a b' color:1 grey; do
+	fails 1 '--to: found' bake kept_two.gltf --radius 1 --to "$to" -o b.gltf
+done
+fails 1 'b.gltf: found the ending of a glTF in text' bake builtin:cornell --radius 1 -o b.gltf
+fails 1 '--instances: found with --max-error' bake kept_two.gltf --radius 1 --max-error 0.1 --instances shared -o b.glb
+fails 1 'kept_two.bin: found the same file' bake kept_two.gltf --radius 1 -o b.glb --json kept_two.bin
 fails 1 '--max-vertices: found without' bake builtin:cornell --radius 1 --max-vertices 100 -o b.glb
 fails 1 '--max-error: found with --fit points' bake builtin:cornell --radius 1 --max-error 0.1 --fit points -o b.glb
 fails 1 '--max-error: found' bake builtin:cornell --radius 1 --max-error 0 -o b.glb

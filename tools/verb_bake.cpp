@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// nook bake: a level → the same level with visibility at its vertices or in a texture, or the visibility of probes.
+// nook bake: a level → the same file with visibility at its vertices or in a texture, or the visibility of probes.
 #include "call.h"
 #include "feature_options.h"
 #include "scene_options.h"
@@ -10,9 +10,11 @@
 #include "core/decimal.h"
 #include "core/image.h"
 #include "core/math.h"
+#include "core/system.h"
 #include "core/text.h"
 #include "core/work_units.h"
 #include "format/pattern_file.h"
+#include "scene/gltf_edit.h"
 #include "scene/level_glb.h"
 #include "scene/load_parts.h"
 #include "scene/sample_set.h"
@@ -29,13 +31,18 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 3> kAllBakeFormats{".glb", ".ktx2", ".glsl"};
-constexpr std::array<std::string_view, 1> kBakeFormats{".glb"};
+constexpr std::array<std::string_view, 7> kAllBakeFormats{".glb", ".gltf", ".csv", ".npy", ".json", ".ktx2", ".glsl"};
+constexpr std::array<std::string_view, 5> kBakeFormats{".glb", ".gltf", ".csv", ".npy", ".json"};
+constexpr std::array<std::string_view, 2> kTextureFormats{".glb", ".gltf"};
 constexpr std::array<std::string_view, 2> kProbeFormats{".ktx2", ".glsl"};
-constexpr std::array<std::string_view, 3> kBakeFalloffs{"hard", "linear", "alchemy"}; // of Falloff, in its order
-constexpr std::array<std::string_view, 2> kBakeFits{"surface", "points"};             // of BakeFit
-constexpr std::array<std::string_view, 2> kBakeSides{"separate", "mean"};             // of BakeSides
-constexpr std::array<std::string_view, 2> kBakeNormals{"geometric", "interpolated"};  // of NormalKind
+constexpr std::array<std::string_view, 3> kBakeFalloffs{"hard", "linear", "alchemy"};    // of Falloff, in its order
+constexpr std::array<std::string_view, 2> kBakeFits{"surface", "points"};                // of BakeFit
+constexpr std::array<std::string_view, 2> kBakeSides{"separate", "mean"};                // of BakeSides
+constexpr std::array<std::string_view, 2> kBakeNormals{"geometric", "interpolated"};     // of NormalKind
+constexpr std::array<std::string_view, 3> kBakeInstances{"separate", "shared", "attribute"}; // of BakeInstances
+constexpr std::array<std::string_view, 6> kBakeTargets{"visibility", "color", "color-alpha", "texcoord", "custom", "texture"};
+constexpr int kMostSet = 7;            // of texture coordinates
+constexpr int kStandardTexture = 1024; // texels across
 constexpr std::size_t kCheckPoints = 4096;
 constexpr const char* kProgram = "nook " NOOK_VERSION;
 
@@ -50,8 +57,40 @@ struct BakeOptions
 	bool mask = false;     // how they are drawn
 	int directions = 128;
 	bool color = false;
+	std::string to = "visibility";
+	BakeTarget target = BakeTarget::visibility;
+	std::string attribute; // that the target names
+	BakeInstances instances = BakeInstances::separate;
+	const CLI::App* app = nullptr;
 	Outputs outputs;
 };
+
+// Letters, digits and _.
+bool isPlainName(std::string_view name)
+{
+	return std::all_of(name.begin(), name.end(),
+					   [](char c)
+					   { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+// "visibility", "texcoord:2", "custom:AO".
+void takeTarget(BakeOptions& options, const std::string& name, const std::string& text)
+{
+	const std::size_t colon = text.find(':');
+	const std::string rest = colon == std::string::npos ? "" : text.substr(colon + 1);
+	const auto word = std::find(kBakeTargets.begin(), kBakeTargets.end(), text.substr(0, colon));
+	const auto target = static_cast<BakeTarget>(word - kBakeTargets.begin());
+	const bool set = target == BakeTarget::texcoord && rest.size() == 1 && rest[0] >= '0' && rest[0] <= '0' + kMostSet;
+	const bool custom = target == BakeTarget::custom && !rest.empty() && isPlainName(rest);
+	const bool plain = target != BakeTarget::texcoord && target != BakeTarget::custom && colon == std::string::npos;
+	if (word == kBakeTargets.end() || !(set || custom || plain))
+	{
+		refuseValue(name, text, "visibility, color, color-alpha, texcoord:0 to texcoord:7, custom:NAME or texture");
+	}
+	options.to = text;
+	options.target = target;
+	options.attribute = set ? "TEXCOORD_" + rest : custom ? (rest[0] == '_' ? "" : "_") + rest : "";
+}
 
 // How the volumes are drawn, by their place in the table.
 std::span<const std::string_view> volumesBy()
@@ -71,6 +110,11 @@ void declare(CLI::App& app, BakeOptions& options)
 {
 	BakeSettings& settings = options.settings;
 	const OptionRule volumes{"--volumes", "--volumes", "no volumes"};
+	const auto take_target = [&options](const std::string& name, const std::string& text)
+	{
+		takeTarget(options, name, text);
+	};
+	options.app = &app;
 	addLevelOptions(app, options.level);
 	addOptions(
 		app,
@@ -97,6 +141,14 @@ void declare(CLI::App& app, BakeOptions& options)
 		  ofVertices({{"--fit points", "--fit surface, whose error it is"}})},
 		 {"--max-vertices", takesWhole(settings.max_vertices, 3, 100'000'000),
 		  "With --max-error: no more vertices than that (default 2000000)", ofVertices({}, {{"--max-error", "both or none"}})},
+		 {"--to",
+		  takesParsed("TARGET", take_target),
+		  "Where the file has it: visibility, an attribute (default), color, color-alpha, texcoord:N, custom:NAME, texture",
+		  {.excludes = {{"--probes"}, {"--volumes", "one of them, since a difference has its own attribute"}}}},
+		 {"--instances", takesChoice(kBakeInstances, options.instances),
+		  "A mesh at several nodes: values for each (default), shared: their mean, attribute: their mean and factors",
+		  ofVertices({{"--bent", "separate, since bent normals are of one place"},
+					  {"--max-error", "none, since each place is split by itself"}})},
 		 {"--color", takesFlag(options.color), "Visibility as COLOR_0, too, which viewers multiply their colours by", ofVertices()},
 		 {"--sides", takesChoice(kBakeSides, settings.sides),
 		  "Materials with two sides: a value for each of them (default), or the mean of both", ofVertices()},
@@ -127,6 +179,31 @@ void declare(CLI::App& app, BakeOptions& options)
 void settle(BakeOptions& options)
 {
 	BakeSettings& settings = options.settings;
+	if (options.target != BakeTarget::texture && options.texture_px > 0 && isGiven(*options.app, "--to"))
+	{
+		refuse("--to: found '" + options.to + "' with --texture, expected --to texture");
+	}
+	if (options.target == BakeTarget::texture && isGiven(*options.app, "--max-error"))
+	{
+		refuse("--max-error: found with --to texture, expected vertices");
+	}
+	if (options.target == BakeTarget::texture && options.texture_px == 0)
+	{
+		options.texture_px = kStandardTexture;
+	}
+	if (options.texture_px > 0)
+	{
+		options.to = kBakeTargets.back();
+		options.target = BakeTarget::texture;
+	}
+	const std::string ending = endingOf(options.level.level);
+	for (const std::string& path : options.outputs.files)
+	{
+		if (endingOf(path) == ".gltf" && ending != ".gltf")
+		{
+			refuse(path + ": found the ending of a glTF in text, expected .glb, since the level is none");
+		}
+	}
 	if (std::isinf(settings.radius_m) && settings.falloff == Falloff::linear)
 	{
 		refuse("--radius: found 'inf', expected metres, since --falloff linear is a share of it");
@@ -168,8 +245,13 @@ void addSettings(Facts& facts, const BakeOptions& options)
 	{
 		facts.text("normals", kBakeNormals[static_cast<std::size_t>(settings.normals)]);
 	}
+	if (!probes)
+	{
+		facts.text("to", options.to);
+	}
 	if (!probes && !texture)
 	{
+		facts.text("instances", kBakeInstances[static_cast<std::size_t>(options.instances)]);
 		facts.text("fit", kBakeFits[static_cast<std::size_t>(settings.fit)]);
 		facts.text("sides", kBakeSides[static_cast<std::size_t>(settings.sides)]);
 	}
@@ -195,7 +277,7 @@ void addCheck(Facts& facts, const BakeCheck& check, const std::string& where)
 			   std::to_string(check.points) + " " + where);
 }
 
-void addResult(Facts& facts, const BakeOptions& options, const VertexBake& bake, std::size_t bytes)
+void addResult(Facts& facts, const BakeOptions& options, const VertexBake& bake)
 {
 	double sum = 0.0;
 	for (const float value : bake.visibility)
@@ -218,7 +300,6 @@ void addResult(Facts& facts, const BakeOptions& options, const VertexBake& bake,
 	facts.whole("buried_points", bake.buried);
 	facts.whole("shut_points", bake.shut);
 	facts.whole("rays", bake.rays);
-	facts.whole("bytes", bytes);
 	facts.number(options.volumes.empty() ? "mean_visibility" : "mean_difference",
 				 sum / static_cast<double>(bake.visibility.size()));
 	facts.number("rms_standard_error", bake.standard_error);
@@ -235,44 +316,191 @@ struct Made
 	std::vector<std::string> warnings;
 };
 
-Made makeVertices(const BakeOptions& options, const Tracer& tracer, Facts& facts, const RunSettings& how)
+// A level and the file to write values into.
+struct BakeInput
+{
+	Tracer tracer;
+	std::vector<glm::uvec3> triangles; // as the file has them, if some were turned for the bake
+	bool in_place = false;             // the level's own glTF file takes the values
+};
+
+GltfFile fileOf(const BakeOptions& options)
+{
+	GltfFile file = openGltf(options.level.level);
+	file.settings = options.level.load;
+	return file;
+}
+
+// What asset.extras says of the bake: the same for the same command, wherever it runs.
+GltfBake bakeOf(const BakeOptions& options)
 {
 	const BakeSettings& settings = options.settings;
-	const VertexBake bake = bakeVertices(tracer, settings, how);
-	const Level& baked = bake.refined ? *bake.refined : tracer.level();
-	const BakeCheck check = checkBake(tracer, baked, bake, settings, kCheckPoints, how);
+	GltfBake bake;
+	bake.target = options.target;
+	bake.attribute = options.attribute;
+	bake.instances = options.instances;
+	bake.color = options.color;
+	bake.kind = options.volumes.empty() ? BakedKind::visibility
+				: options.mask          ? BakedKind::mask_volume_difference
+										: BakedKind::volume_difference;
+	std::string command = "nook";
+	for (const std::string& word : commandWords(*options.app))
+	{
+		const bool path = word == options.level.level || word == options.volumes;
+		command += " " + (path ? nativePath(word).filename().string() : word);
+	}
+	bake.record = {
+		{"to", options.to},
+		{"radius_m", std::isinf(settings.radius_m) ? nlohmann::ordered_json() : nlohmann::ordered_json(settings.radius_m)},
+		{"falloff", kBakeFalloffs[static_cast<std::size_t>(settings.falloff)]},
+		{"rays", settings.rays},
+		{"version", NOOK_VERSION},
+		{"command", command}};
+	return bake;
+}
+
+// Values alone, in place of a level with them.
+bool isValues(const std::string& path)
+{
+	const std::string ending = endingOf(path);
+	return ending == ".csv" || ending == ".npy" || ending == ".json";
+}
+
+// Adds values to the level's file, or to a file made of the level.
+GltfBaked write(const BakeOptions& options, const BakeInput& input, const Level& level, const GltfBake& bake, Made& made,
+				const RunSettings& how)
+{
+	std::vector<GltfPlace> places;
+	std::vector<std::string> outputs;
+	for (const std::string& path : options.outputs.files)
+	{
+		if (!isValues(path))
+		{
+			outputs.push_back(path);
+		}
+	}
+	outputs.resize(std::max<std::size_t>(outputs.size(), 1), "-"); // its size is reported in any case
+	std::optional<GltfFile> file;
+	if (input.in_place)
+	{
+		places = loadPlaces(options.level.level, options.level.load, level, how);
+		file = fileOf(options);
+	}
+	else
+	{
+		file = openGlb(levelGlb(level, kProgram, places), level.name);
+	}
+	GltfBaked baked = bakeInto(*file, places, bake, outputs);
+	for (std::size_t i = 0, next = 0; i < options.outputs.files.size(); ++i)
+	{
+		const std::string& path = options.outputs.files[i];
+		made.bytes.push_back(isValues(path) ? placeValues(places, baked.front, baked.back, endingOf(path)) : baked.files[next++]);
+	}
+	if (baked.kept_alpha > 0)
+	{
+		made.warnings.push_back("--to color-alpha: " + std::to_string(baked.kept_alpha) +
+								" materials have no value, since their alpha is coverage");
+	}
+	return baked;
+}
+
+void addFile(Facts& facts, const BakeInput& input, const GltfBaked& baked)
+{
+	facts.text("file", input.in_place ? "the level's, with additions" : "a new one");
+	facts.whole("bytes_added", baked.bytes_added);
+	facts.whole("bytes", baked.files.front().size());
+	if (baked.shared_meshes > 0)
+	{
+		facts.whole("shared_meshes", baked.shared_meshes, "meshes at several places");
+		facts.whole("mesh_copies", baked.copies, "meshes added for their values");
+	}
+	facts.line("file: " + std::to_string(baked.files.front().size()) + " bytes, " + std::to_string(baked.bytes_added) +
+			   " of them values");
+	if (!baked.compression.empty())
+	{
+		const std::string repack = "gltf-transform " + baked.compression + " IN.glb OUT.glb";
+		facts.text("repack", repack);
+		facts.line("compression: the input's " + baked.compression + " is undone; `" + repack + "` packs the output");
+	}
+}
+
+// In the file, triangles that were turned for the bake show their other sides.
+void turnBack(const BakeInput& input, const Level& level, VertexBake& bake)
+{
+	std::vector<uint8_t> seen(level.positions.size(), 0); // 1: by a triangle that was not turned
+	for (std::size_t t = 0; t < input.triangles.size(); ++t)
+	{
+		const uint8_t bit = input.triangles[t] == level.triangles[t] ? 1 : 2;
+		for (int corner = 0; corner < 3; ++corner)
+		{
+			seen[level.triangles[t][corner]] |= bit;
+		}
+	}
+	for (std::size_t v = 0; v < seen.size() && !bake.back.empty(); ++v)
+	{
+		if (seen[v] == 2)
+		{
+			std::swap(bake.visibility[v], bake.back[v]);
+			if (!bake.bent_back.empty())
+			{
+				std::swap(bake.bent[v], bake.bent_back[v]);
+			}
+		}
+	}
+}
+
+Made makeVertices(const BakeOptions& options, const BakeInput& input, Facts& facts, const RunSettings& how)
+{
+	const BakeSettings& settings = options.settings;
+	VertexBake bake = bakeVertices(input.tracer, settings, how);
+	std::optional<Level> turned;
+	if (!input.triangles.empty())
+	{
+		turnBack(input, input.tracer.level(), bake);
+		turned = input.tracer.level();
+		turned->triangles = input.triangles;
+	}
+	const Level& level = bake.refined ? *bake.refined : turned ? *turned : input.tracer.level();
+	Made made;
+	std::optional<GltfBaked> baked;
+	if (!isShare(how))
+	{
+		GltfBake in = bakeOf(options);
+		in.visibility = bake.visibility;
+		in.back = bake.back;
+		in.bent = bake.bent;
+		in.bent_back = bake.bent_back;
+		baked = write(options, input, level, in, made, how);
+		bake.visibility = baked->front;
+		bake.back = baked->back;
+	}
+	const BakeCheck check = checkBake(input.tracer, level, bake, settings, kCheckPoints, how);
 	if (isShare(how))
 	{
 		return {};
 	}
-	const BakedKind kind = options.volumes.empty() ? BakedKind::visibility
-						   : options.mask          ? BakedKind::mask_volume_difference
-												   : BakedKind::volume_difference;
-	const std::string bytes =
-		levelGlb(baked, kProgram, {bake.visibility, options.color, {}, {}, bake.back, bake.bent, bake.bent_back, kind});
 	give<float>("visibility", bake.visibility, {bake.visibility.size()});
 	give<float>("back", bake.back, {bake.back.size()});
 	give<float>("bent", bake.bent, {bake.bent.size(), 3});
 	give<float>("bent_back", bake.bent_back, {bake.bent_back.size(), 3});
 	if (bake.refined)
 	{
-		give<double>("positions", baked.positions, {baked.positions.size(), 3});
-		give<uint32_t>("triangles", baked.triangles, {baked.triangles.size(), 3});
+		give<double>("positions", level.positions, {level.positions.size(), 3});
+		give<uint32_t>("triangles", level.triangles, {level.triangles.size(), 3});
 	}
-	addResult(facts, options, bake, bytes.size());
+	addResult(facts, options, bake);
 	addCheck(facts, check, "other points of the surface");
 	if (settings.base)
 	{
 		facts.number("rmse_of_volumes", check.rmse_without);
 	}
-	facts.line("file: " + std::to_string(bytes.size()) + " bytes");
+	addFile(facts, input, *baked);
 	if (settings.bent)
 	{
 		const double angle_deg = check.angle_rad * 180.0 / kPi;
 		facts.number("bent_angle_deg", angle_deg);
 		facts.line("bent normals: " + roundedText(angle_deg, 3) + " degrees from those of rays in the mean");
 	}
-	Made made{std::vector<std::string>(options.outputs.files.size(), bytes), {}};
 	if (bake.capped)
 	{
 		made.warnings.push_back("--max-vertices: " + std::to_string(settings.max_vertices) + " left " + std::to_string(bake.above) +
@@ -287,13 +515,20 @@ Made makeVertices(const BakeOptions& options, const Tracer& tracer, Facts& facts
 	return made;
 }
 
-Made makeTexture(const BakeOptions& options, const Tracer& tracer, Facts& facts, const RunSettings& how)
+Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& facts, const RunSettings& how)
 {
-	const Level& level = tracer.level();
-	const std::vector<glm::vec2> second = loadSecondUvs(options.level.level, options.level.load, level, how);
-	const std::vector<glm::vec2>& uvs = second.empty() ? level.uvs : second;
-	const TextureBake bake = bakeTexture(tracer, uvs, options.texture_px, options.settings, how);
-	const BakeCheck check = checkTexture(tracer, uvs, bake, options.settings, kCheckPoints, how);
+	const Level& level = input.tracer.level();
+	uint32_t set = 1;
+	std::vector<glm::vec2> of_file = loadSecondUvs(options.level.level, options.level.load, level, how, set);
+	const bool second = !of_file.empty();
+	if (!second && input.in_place)
+	{
+		set = 0;
+		of_file = loadSecondUvs(options.level.level, options.level.load, level, how, set);
+	}
+	const std::vector<glm::vec2>& uvs = of_file.empty() ? level.uvs : of_file;
+	const TextureBake bake = bakeTexture(input.tracer, uvs, options.texture_px, options.settings, how);
+	const BakeCheck check = checkTexture(input.tracer, uvs, bake, options.settings, kCheckPoints, how);
 	if (isShare(how))
 	{
 		return {};
@@ -305,9 +540,17 @@ Made makeTexture(const BakeOptions& options, const Tracer& tracer, Facts& facts,
 		rgb.insert(rgb.end(), {value, value, value});
 	}
 	const std::string png = pngBytes(bake.size_px, bake.size_px, rgb, {});
-	const std::string bytes = levelGlb(level, kProgram, {{}, false, uvs, png, {}, {}, {}});
 	give<uint8_t>("texels", bake.values, {static_cast<std::size_t>(bake.size_px), static_cast<std::size_t>(bake.size_px)});
-	facts.text("coordinates", second.empty() ? "first" : "second");
+	GltfBake in = bakeOf(options);
+	in.png = png;
+	in.uv_set = set;
+	if (!input.in_place)
+	{
+		in.uvs = uvs;
+	}
+	Made made;
+	const GltfBaked baked = write(options, input, level, in, made, how);
+	facts.text("coordinates", second ? "second" : "first");
 	facts.whole("texels_across", bake.size_px);
 	facts.whole("charts", bake.charts);
 	facts.whole("covered_texels", bake.covered);
@@ -318,13 +561,12 @@ Made makeTexture(const BakeOptions& options, const Tracer& tracer, Facts& facts,
 			   std::to_string(bake.shared) + " in more than one, " + std::to_string(bake.buried) + " inside matter");
 	facts.whole("missed_triangles", bake.missed, "triangles without a texel");
 	facts.whole("rays", bake.rays);
-	facts.whole("bytes", bytes.size());
 	facts.whole("png_bytes", png.size());
 	facts.number("rms_standard_error", bake.standard_error);
 	facts.line("standard error: " + roundedText(bake.standard_error, 3) + " of a texel");
 	addCheck(facts, check, "points of the surface");
-	facts.line("file: " + std::to_string(bytes.size()) + " bytes");
-	return {std::vector<std::string>(options.outputs.files.size(), bytes), {}};
+	addFile(facts, input, baked);
+	return made;
 }
 
 Made makeProbes(const BakeOptions& options, const Tracer& tracer, Facts& facts, const RunSettings& how)
@@ -366,10 +608,25 @@ void run(BakeOptions& options, VerbProgress& progress)
 	const bool probes = options.probes_m > 0.0;
 	std::vector<std::string> inputs{options.level.level, options.volumes};
 	std::erase(inputs, "");
-	checkOutputs(options.outputs, probes ? std::span<const std::string_view>(kProbeFormats) : kBakeFormats, inputs);
+	const std::string ending = endingOf(options.level.level);
+	const bool is_gltf = ending == ".gltf" || ending == ".glb";
+	const bool replaces =
+		is_gltf && !probes && options.outputs.depfile.empty() &&
+		std::any_of(options.outputs.files.begin(), options.outputs.files.end(),
+					[id = fileIdentity(options.level.level)](const auto& path) { return fileIdentity(path) == id; });
+	const auto others = [&](std::vector<std::string> files) // without a level that its bake replaces
+	{
+		std::erase_if(files, [&](const std::string& path) { return replaces && path == options.level.level; });
+		return files;
+	};
+	checkOutputs(options.outputs,
+				 probes                   ? std::span<const std::string_view>(kProbeFormats)
+				 : options.texture_px > 0 ? std::span<const std::string_view>(kTextureFormats)
+										  : kBakeFormats,
+				 others(inputs));
 	const RunSettings how = progress.start("bake", options.outputs.threads, options.outputs.progress);
 	LoadedLevel loaded = t_call != nullptr ? *t_call->level : loadLevel(options.level.level, options.level.load, how);
-	checkRead(options.outputs, loaded.level.files);
+	checkRead(options.outputs, others(loaded.level.files));
 	std::vector<std::string> read = loaded.level.files;
 	if (!options.volumes.empty())
 	{
@@ -377,15 +634,23 @@ void run(BakeOptions& options, VerbProgress& progress)
 		read.push_back(options.volumes);
 	}
 	addInputs(read, how);
+	const bool is_cell =
+		std::any_of(loaded.level.meshes.begin(), loaded.level.meshes.end(), [](const Mesh& mesh) { return mesh.around; });
+	const bool in_place = is_gltf && !is_cell && options.settings.max_error == 0.0;
+	std::vector<glm::uvec3> triangles = in_place ? loaded.level.triangles : std::vector<glm::uvec3>();
 	const std::size_t turned = alignSheets(loaded.level, how.threads);
-	const Tracer tracer(loaded.level, how);
+	if (turned == 0)
+	{
+		triangles.clear();
+	}
+	const BakeInput input{Tracer(loaded.level, how), std::move(triangles), in_place};
 	Facts facts = verbFacts("bake");
 	addLevelFacts(facts, loaded);
 	facts.whole("turned_triangles", turned);
 	addSettings(facts, options);
-	const Made made = probes                   ? makeProbes(options, tracer, facts, how)
-					  : options.texture_px > 0 ? makeTexture(options, tracer, facts, how)
-											   : makeVertices(options, tracer, facts, how);
+	const Made made = probes                   ? makeProbes(options, input.tracer, facts, how)
+					  : options.texture_px > 0 ? makeTexture(options, input, facts, how)
+											   : makeVertices(options, input, facts, how);
 	if (isShare(how))
 	{
 		return;

@@ -11,6 +11,7 @@
 #include "methods/recipes.h"
 #include "pattern/quality.h"
 #include "scene/describe.h"
+#include "scene/gltf_edit.h"
 #include "shade/asset_kinds.h"
 #include "version.h"
 #include "volume/build.h"
@@ -172,6 +173,28 @@ template <class Path> std::string describeAsset(const Path& path)
 	return {};
 }
 
+// What nook bake wrote into a file, if it did. A template, like the next.
+void describeBake(const auto& record, Facts& facts)
+{
+	const auto text = [&](const char* name)
+	{
+		const nlohmann::ordered_json value = record.value(name, nlohmann::ordered_json());
+		return value.is_string() ? value.get<std::string>() : value.is_null() ? "inf" : value.dump();
+	};
+	if (record.is_null())
+	{
+		return;
+	}
+	facts.line("baked: " + text("to") + ", radius " + text("radius_m") + " m, falloff " + text("falloff") + ", " + text("rays") +
+			   " rays, by nook " + text("version"));
+	facts.text("bake_to", text("to"));
+	facts.text("bake_radius_m", text("radius_m"));
+	facts.text("bake_falloff", text("falloff"));
+	facts.text("bake_rays", text("rays"));
+	facts.text("bake_version", text("version"));
+	facts.text("bake_command", text("command"), "bake command");
+}
+
 // A level, volumes, another asset or an image; false for another file. A template, so that only a build with levels needs what it
 // calls.
 template <class Options> bool describeOfLevels(const Options& options, const RunSettings& settings, Facts& facts)
@@ -197,6 +220,7 @@ template <class Options> bool describeOfLevels(const Options& options, const Run
 		checkRead(options.outputs, loaded.level.files);
 		const ProgressCounter stage(settings.progress, "advice");
 		describeLevel(loaded, settings.threads, facts);
+		describeBake(bakeRecordOf(options.file), facts);
 	}
 	else if (isImageName(options.file))
 	{

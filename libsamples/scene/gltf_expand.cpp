@@ -176,6 +176,7 @@ struct DracoMesh
 {
 	std::vector<std::pair<std::size_t, std::size_t>> primitives; // primitives that use it: mesh and primitive number
 	std::string where;                                           // location of the first one
+	std::size_t view = 0;                                        // buffer view of the coded bytes
 	std::string_view coded;
 	std::vector<DracoAttribute> attributes;
 	std::vector<std::size_t> accessors; // one accessor each
@@ -183,13 +184,6 @@ struct DracoMesh
 	std::vector<uint32_t> indices;
 	std::vector<std::string> values;
 };
-
-// The reader ignores other attributes, so they are removed from the primitive.
-bool isUsed(const std::string& attribute)
-{
-	return attribute == "POSITION" || attribute == "NORMAL" || attribute == "COLOR_0" || attribute.starts_with("TEXCOORD_") ||
-		   attribute.starts_with("JOINTS_") || attribute.starts_with("WEIGHTS_");
-}
 
 class DracoExpander
 {
@@ -240,6 +234,7 @@ private:
 		const std::size_t view = extension->indexNeeded("bufferView", m_file.root().count("bufferViews"));
 		DracoMesh made;
 		made.where = where;
+		made.view = view;
 		addAttributes(attributes, extension->objectNeeded("attributes"), made);
 		const auto [known, is_new] = m_of_view.try_emplace(view, m_meshes.size());
 		if (is_new)
@@ -258,7 +253,7 @@ private:
 	{
 		for (const auto& [name, number] : attributes.value->items())
 		{
-			if (!isUsed(name) || !ids.has(name))
+			if (!ids.has(name))
 			{
 				continue;
 			}
@@ -330,7 +325,8 @@ private:
 		}
 	}
 
-	// Makes the primitives triangles with accessors into the decoded buffer.
+	// Makes the primitives triangles with accessors into decoded buffers. The coded view becomes that of the indices, and the first
+	// primitive's accessor of indices that of all, so that no dead ones remain.
 	void replace(DracoMesh& mesh)
 	{
 		nlohmann::json& accessors = m_file.json["accessors"];
@@ -342,24 +338,29 @@ private:
 			accessor.erase("byteOffset");
 		}
 		const std::string_view indices(reinterpret_cast<const char*>(mesh.indices.data()), 4 * mesh.indices.size());
-		accessors.push_back({{"bufferView", addView(m_file, std::string(indices))},
-							 {"componentType", 5125U},
-							 {"count", mesh.indices.size()},
-							 {"type", "SCALAR"}});
+		m_file.json["bufferViews"][mesh.view] = {{"buffer", addBuffer(m_file, std::string(indices))},
+												 {"byteLength", indices.size()}};
+		const auto& [first_mesh, first] = mesh.primitives.front();
+		const JsonValue coded = m_file.root().item("meshes", first_mesh).item("primitives", first);
+		std::size_t used = coded.index("indices", accessors.size()).value_or(accessors.size());
+		if (used == accessors.size() || accessors[used].contains("bufferView"))
+		{
+			used = accessors.size();
+			accessors.push_back(nlohmann::json::object());
+		}
+		accessors[used]["bufferView"] = mesh.view;
+		accessors[used]["componentType"] = 5125U;
+		accessors[used]["count"] = mesh.indices.size();
+		accessors[used]["type"] = "SCALAR";
+		for (const char* const stale : {"byteOffset", "min", "max"})
+		{
+			accessors[used].erase(stale);
+		}
 		std::vector<uint32_t>().swap(mesh.indices);
 		for (const auto& [of, index] : mesh.primitives)
 		{
 			nlohmann::json& primitive = m_file.json["meshes"][of]["primitives"][index];
-			nlohmann::json attributes = nlohmann::json::object();
-			for (const auto& [name, number] : primitive["attributes"].items())
-			{
-				if (isUsed(name))
-				{
-					attributes[name] = number;
-				}
-			}
-			primitive["attributes"] = std::move(attributes);
-			primitive["indices"] = accessors.size() - 1;
+			primitive["indices"] = used;
 			primitive["mode"] = 4U;
 		}
 	}

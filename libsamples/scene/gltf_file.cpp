@@ -84,6 +84,10 @@ std::string takeChunks(std::string bytes, GltfFile& file)
 			chunk_size = size;
 			file.has_chunk = true;
 		}
+		else
+		{
+			file.others.append(bytes, at - 8, size + 8);
+		}
 		at += size;
 	}
 	// In place, because it is most of a file that may be large.
@@ -124,24 +128,16 @@ void checkText(const std::string& text, const std::string& path)
 
 } // namespace
 
-GltfFile openGltf(const std::string& path)
+namespace
 {
-	GltfFile file;
-	file.path = path;
-	std::string text = readFile(path);
-	const bool is_binary = endingOf(path) == ".glb";
-	if (!is_binary && text.starts_with("glTF"))
-	{
-		refuseFile(path, "header: found a binary glTF, expected the ending .glb of one, or text");
-	}
-	if (is_binary)
-	{
-		text = takeChunks(std::move(text), file);
-	}
-	checkText(text, path);
+
+void parseText(GltfFile& file)
+{
+	const std::string& path = file.path;
+	checkText(file.text, path);
 	try
 	{
-		file.json = nlohmann::json::parse(text);
+		file.json = nlohmann::json::parse(file.text);
 	}
 	catch (const nlohmann::json::exception& error)
 	{
@@ -153,6 +149,35 @@ GltfFile openGltf(const std::string& path)
 											: reason;
 		refuseFile(path, "JSON: found an error " + reason.substr(0, reason.find(';')) + ", expected the text of a glTF file");
 	}
+}
+
+} // namespace
+
+GltfFile openGlb(std::string bytes, const std::string& path)
+{
+	GltfFile file;
+	file.path = path;
+	file.is_binary = true;
+	file.text = takeChunks(std::move(bytes), file);
+	parseText(file);
+	return file;
+}
+
+GltfFile openGltf(const std::string& path)
+{
+	std::string text = readFile(path);
+	if (endingOf(path) == ".glb")
+	{
+		return openGlb(std::move(text), path);
+	}
+	if (text.starts_with("glTF"))
+	{
+		refuseFile(path, "header: found a binary glTF, expected the ending .glb of one, or text");
+	}
+	GltfFile file;
+	file.path = path;
+	file.text = std::move(text);
+	parseText(file);
 	return file;
 }
 

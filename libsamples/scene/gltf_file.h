@@ -28,7 +28,10 @@ struct GltfFile
 	LoadSettings settings;
 	std::optional<uint32_t> second_set; // texture coordinates to read in addition to each material's mask coordinates
 	nlohmann::json json;
-	std::string chunk; // binary chunk of a .glb
+	std::string text;   // of the JSON
+	std::string chunk;  // binary chunk of a .glb
+	std::string others; // further chunks of a .glb, with their heads
+	bool is_binary = false;
 	bool has_chunk = false;
 	std::vector<std::optional<std::string>> buffers; // contents of buffers other than the chunk, loaded on demand
 	std::vector<std::string> decoded;                // contents of the last buffers, made by expandGltf()
@@ -44,6 +47,9 @@ struct GltfFile
 
 // Reads the container and parses it. Throws Error: file, or invalid_input.
 GltfFile openGltf(const std::string& path);
+
+// Likewise for the contents of a .glb file.
+GltfFile openGlb(std::string bytes, const std::string& path);
 
 // Checks buffers, views, accessors, meshes, nodes and scenes: types, indices and ranges, no node twice in a tree, known extensions.
 // Decompresses on the way.

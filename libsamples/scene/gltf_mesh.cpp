@@ -374,6 +374,14 @@ private:
 			made.around = isMarked(node, "nook_around");
 			made.closed = isMarked(node, "nook_closed");
 			m_elements.add("mesh '" + made.name + "'", primitive.elementCount());
+			if (m_file.second_set == kPlacesSet && primitive.triangleCount() > 0)
+			{
+				m_source.places.push_back({node.index,
+										   node.instance,
+										   static_cast<std::size_t>(&primitive - m_meshes[*mesh].data()),
+										   primitive.positions->count(),
+										   {}});
+			}
 			triangles(primitive, m_world_from_file * node.world, pose);
 			made.triangle_count = m_level.triangles.size() - made.first_triangle;
 			if (primitive.uvs == nullptr && !primitive.ramp && made.triangle_count > 0 &&
@@ -488,7 +496,12 @@ private:
 			uv = glm::dvec2(m_source.materials[primitive.material].uv_of_set * glm::dvec3(primitive.uvs->vec2(vertex), 1.0));
 		}
 		m_level.uvs.push_back(uv);
-		if (m_file.second_set)
+		if (m_file.second_set == kPlacesSet)
+		{
+			m_source.places.back().vertices.emplace_back(static_cast<uint32_t>(vertex), m_slot[vertex]);
+			m_source.second_uvs.emplace_back(m_slot[vertex] >> 14U, m_slot[vertex] & 0x3fffU);
+		}
+		else if (m_file.second_set)
 		{
 			m_source.second_uvs.push_back(secondOf(primitive, vertex));
 		}

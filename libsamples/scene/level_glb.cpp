@@ -30,8 +30,7 @@ namespace
 class GlbMaterials
 {
 public:
-	// Both arguments must outlive this object. `occlusion_png`: empty, or the occlusionTexture of all materials.
-	GlbMaterials(const Level& level, std::string_view occlusion_png);
+	explicit GlbMaterials(const Level& level); // must outlive this object
 
 	// The file's number of a level's material, created on first use.
 	int indexOf(uint32_t material);
@@ -44,11 +43,8 @@ public:
 
 private:
 	int textureOf(std::size_t mask);
-	int occlusionTexture();
 
 	const Level& m_level;
-	std::string_view m_occlusion_png;
-	int m_occlusion = -1;        // number of the occlusion texture; -1: not created yet
 	std::vector<int> m_material; // file number of each material and mask, or −1
 	std::vector<int> m_mask;
 };
@@ -62,8 +58,8 @@ int wrapCode(Wrap wrap)
 	return wrap == Wrap::clamp ? 33071 : wrap == Wrap::mirror ? 33648 : 10497;
 }
 
-GlbMaterials::GlbMaterials(const Level& level, std::string_view occlusion_png)
-	: m_level(level), m_occlusion_png(occlusion_png), m_material(level.material_list.size(), -1), m_mask(level.masks.size(), -1)
+GlbMaterials::GlbMaterials(const Level& level)
+	: m_level(level), m_material(level.material_list.size(), -1), m_mask(level.masks.size(), -1)
 {
 }
 
@@ -90,30 +86,12 @@ int GlbMaterials::indexOf(uint32_t index)
 			item["pbrMetallicRoughness"]["baseColorTexture"]["index"] = textureOf(static_cast<std::size_t>(material.mask));
 		}
 	}
-	if (!m_occlusion_png.empty())
-	{
-		item["occlusionTexture"] = {{"index", occlusionTexture()}, {"texCoord", material.mask >= 0 ? 1 : 0}};
-	}
 	item["doubleSided"] = material.two_sided;
 	materials.push_back(item);
 	return made;
 }
 
 // Texture, sampler and image share one number.
-int GlbMaterials::occlusionTexture()
-{
-	if (m_occlusion < 0)
-	{
-		m_occlusion = static_cast<int>(textures.size());
-		textures.push_back({{"sampler", m_occlusion}, {"source", m_occlusion}});
-		samplers.push_back(
-			{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", wrapCode(Wrap::clamp)}, {"wrapT", wrapCode(Wrap::clamp)}});
-		images.push_back({{"name", "visibility"}, {"mimeType", "image/png"}});
-		pictures.emplace_back(m_occlusion_png);
-	}
-	return m_occlusion;
-}
-
 int GlbMaterials::textureOf(std::size_t index)
 {
 	int& made = m_mask[index];
@@ -137,7 +115,6 @@ static_assert(std::endian::native == std::endian::little, "glTF is little-endian
 
 constexpr int kFloats = 5126; // component types
 constexpr int kUints = 5125;
-constexpr int kBytes = 5121;
 constexpr int kVertexData = 34962; // targets of buffer views
 constexpr int kIndexData = 34963;
 
@@ -154,8 +131,9 @@ Json listed(glm::dvec3 v)
 class Writer
 {
 public:
-	Writer(const Level& level, const GlbBake& bake)
-		: m_level(level), m_bake(bake), m_origin(glbOrigin(boundsOf(level))), m_materials(level, bake.png)
+	// `places`: null, or filled with where the level's vertices are; surroundings then stay out.
+	Writer(const Level& level, std::vector<GltfPlace>* places)
+		: m_level(level), m_places(places), m_origin(glbOrigin(boundsOf(level))), m_materials(level)
 	{
 		m_slot.resize(level.positions.size());
 		m_slot_of.resize(level.positions.size(), 0);
@@ -165,7 +143,7 @@ public:
 	{
 		for (const Mesh& mesh : m_level.meshes)
 		{
-			if (!mesh.around || (m_bake.visibility.empty() && m_bake.png.empty())) // belongs to another cell
+			if (!mesh.around || m_places == nullptr) // belongs to another cell
 			{
 				add(mesh);
 			}
@@ -199,7 +177,7 @@ public:
 			}
 		}
 		root["buffers"] = Json::array({Json{{"byteLength", chunk.size()}}});
-		return container(jsonLine(root), chunk);
+		return glbContainer(jsonLine(root), chunk, {}, m_level.name);
 	}
 
 private:
@@ -216,7 +194,7 @@ private:
 		Json primitives = Json::array();
 		for (const uint32_t material : materials)
 		{
-			primitives.push_back(primitive(mesh, material));
+			primitives.push_back(primitive(mesh, material, primitives.size()));
 		}
 		if (primitives.empty())
 		{
@@ -239,7 +217,7 @@ private:
 		m_meshes.push_back({{"name", mesh.name}, {"primitives", primitives}});
 	}
 
-	Json primitive(const Mesh& mesh, uint32_t material)
+	Json primitive(const Mesh& mesh, uint32_t material, std::size_t number)
 	{
 		m_current += 1;
 		std::vector<uint32_t> vertices;
@@ -273,53 +251,20 @@ private:
 				append(m_uvs, m_level.uvs[v]);
 			}
 		}
-		addBake(attributes, vertices, m_level.material_list[material].two_sided);
+		if (m_places != nullptr)
+		{
+			GltfPlace& place = m_places->emplace_back();
+			place.node = m_nodes.size();
+			place.primitive = number;
+			place.count = vertices.size();
+			for (std::size_t v = 0; v < vertices.size(); ++v)
+			{
+				place.vertices.emplace_back(static_cast<uint32_t>(v), vertices[v]);
+			}
+		}
 		return {{"attributes", attributes},
 				{"indices", accessor(kIndices, "SCALAR", first_index * sizeof(uint32_t), indices)},
 				{"material", m_materials.indexOf(material)}};
-	}
-
-	void addBake(Json& attributes, const std::vector<uint32_t>& vertices, bool two_sided)
-	{
-		if (!m_bake.uvs.empty())
-		{
-			attributes[attributes.contains("TEXCOORD_0") ? "TEXCOORD_1" : "TEXCOORD_0"] =
-				accessor(kUvs, "VEC2", m_uvs.size(), vertices.size());
-			for (const uint32_t v : vertices)
-			{
-				append(m_uvs, m_bake.uvs[v]);
-			}
-		}
-		const auto add = [&](const std::string& name, View view, const char* type, std::string& bytes, const auto& values)
-		{
-			if (values.empty())
-			{
-				return;
-			}
-			attributes[name] = accessor(view, type, bytes.size(), vertices.size());
-			for (const uint32_t v : vertices)
-			{
-				append(bytes, values[v]);
-			}
-		};
-		const bool back = two_sided && !m_bake.back.empty();
-		const std::string name(kBakedNames[static_cast<std::size_t>(m_bake.kind)]);
-		add(name, kVisibilities, "SCALAR", m_visibilities, m_bake.visibility);
-		add(name + "_BACK", kVisibilities, "SCALAR", m_visibilities, back ? m_bake.back : std::span<const float>());
-		add("_BENT_NORMAL", kBent, "VEC3", m_bent, m_bake.bent);
-		add("_BENT_NORMAL_BACK", kBent, "VEC3", m_bent, back ? m_bake.bent_back : std::span<const glm::vec3>());
-		if (m_bake.color)
-		{
-			const std::size_t made = accessor(kColors, "VEC4", m_colors.size(), vertices.size());
-			m_accessors[made]["normalized"] = true;
-			attributes["COLOR_0"] = made;
-			for (const uint32_t v : vertices)
-			{
-				const float value = back ? 0.5F * (m_bake.visibility[v] + m_bake.back[v]) : m_bake.visibility[v];
-				const auto grey = static_cast<uint32_t>(value * 255.0F + 0.5F);
-				append(m_colors, grey * 0x10101U + 0xff000000U);
-			}
-		}
 	}
 
 	uint32_t slotOf(uint32_t vertex, std::vector<uint32_t>& vertices)
@@ -356,9 +301,6 @@ private:
 		kPositions,
 		kNormals,
 		kUvs,
-		kVisibilities,
-		kBent,
-		kColors,
 		kIndices,
 		kViews,
 	};
@@ -366,9 +308,7 @@ private:
 	{
 		m_accessors.push_back({{"bufferView", std::size_t{view}},
 							   {"byteOffset", offset},
-							   {"componentType", view == kIndices  ? kUints
-												 : view == kColors ? kBytes
-																   : kFloats},
+							   {"componentType", view == kIndices ? kUints : kFloats},
 							   {"count", count},
 							   {"type", type}});
 		return m_accessors.size() - 1;
@@ -409,9 +349,8 @@ private:
 	{
 		std::string buffer;
 		std::array<std::size_t, kViews> number{};
-		const std::array<std::string*, kViews> parts{&m_positions, &m_normals, &m_uvs,    &m_visibilities,
-													 &m_bent,      &m_colors,  &m_indices};
-		constexpr std::array<std::size_t, kViews> kStrides{12, 12, 8, 4, 12, 4, 0};
+		const std::array<std::string*, kViews> parts{&m_positions, &m_normals, &m_uvs, &m_indices};
+		constexpr std::array<std::size_t, kViews> kStrides{12, 12, 8, 0};
 		for (std::size_t i = 0; i < kViews; ++i)
 		{
 			number[i] = m_views.size();
@@ -450,28 +389,8 @@ private:
 		std::string().swap(bytes);
 	}
 
-	// glTF 2.0, section 4.4.
-	std::string container(std::string text, const std::string& chunk) const
-	{
-		text.resize((text.size() + 3) / 4 * 4, ' ');
-		const std::size_t size = 12 + 8 + text.size() + 8 + chunk.size();
-		if (size > kMaxFileBytes)
-		{
-			throw Error(ExitCode::unsupported,
-						m_level.name + ": found a file of " + std::to_string(size) + " bytes, expected at most 1 GiB");
-		}
-		std::string bytes = "glTF";
-		append(bytes, uint32_t{2});
-		append(bytes, static_cast<uint32_t>(size));
-		append(bytes, static_cast<uint32_t>(text.size()));
-		bytes += "JSON" + text;
-		append(bytes, static_cast<uint32_t>(chunk.size()));
-		bytes.append("BIN\0", 4);
-		return bytes + chunk;
-	}
-
 	const Level& m_level;
-	GlbBake m_bake;
+	std::vector<GltfPlace>* m_places;
 	glm::dvec3 m_origin;
 
 	// For the current primitive: the number of each level vertex, and the primitive that assigned it.
@@ -483,9 +402,6 @@ private:
 	std::string m_positions;
 	std::string m_normals;
 	std::string m_uvs;
-	std::string m_visibilities;
-	std::string m_bent;
-	std::string m_colors;
 	std::string m_indices;
 	Json m_nodes = Json::array();
 	Json m_cameras = Json::array();
@@ -496,6 +412,31 @@ private:
 
 } // namespace
 
+// glTF 2.0, section 4.4.
+std::string glbContainer(std::string text, std::string_view chunk, std::string_view others, const std::string& name)
+{
+	text.resize((text.size() + 3) / 4 * 4, ' ');
+	const std::size_t padded = (chunk.size() + 3) / 4 * 4;
+	const std::size_t size = 12 + 8 + text.size() + (padded > 0 ? 8 + padded : 0) + others.size();
+	if (size > kMaxFileBytes)
+	{
+		throw Error(ExitCode::unsupported, name + ": found a file of " + std::to_string(size) + " bytes, expected at most 1 GiB");
+	}
+	std::string bytes = "glTF";
+	append(bytes, uint32_t{2});
+	append(bytes, static_cast<uint32_t>(size));
+	append(bytes, static_cast<uint32_t>(text.size()));
+	bytes += "JSON" + text;
+	if (padded > 0)
+	{
+		append(bytes, static_cast<uint32_t>(padded));
+		bytes.append("BIN\0", 4);
+		bytes += chunk;
+		bytes.append(padded - chunk.size(), '\0');
+	}
+	return bytes.append(others);
+}
+
 glm::dvec3 glbOrigin(const Bounds& bounds)
 {
 	const glm::dvec3 reach = glm::max(glm::abs(bounds.least), glm::abs(bounds.most));
@@ -504,14 +445,14 @@ glm::dvec3 glbOrigin(const Bounds& bounds)
 
 std::string levelGlb(const Level& level, std::string_view generator)
 {
-	return levelGlb(level, generator, {});
+	assert(!level.triangles.empty());
+	return Writer(level, nullptr).bytes(generator);
 }
 
-std::string levelGlb(const Level& level, std::string_view generator, const GlbBake& bake)
+std::string levelGlb(const Level& level, std::string_view generator, std::vector<GltfPlace>& places)
 {
-	assert(!level.triangles.empty() && (bake.visibility.empty() || bake.visibility.size() == level.positions.size()));
-	assert(bake.uvs.empty() == bake.png.empty() && (bake.uvs.empty() || bake.uvs.size() == level.positions.size()));
-	return Writer(level, bake).bytes(generator);
+	assert(!level.triangles.empty());
+	return Writer(level, &places).bytes(generator);
 }
 
 } // namespace nook

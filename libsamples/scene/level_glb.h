@@ -4,6 +4,7 @@
 
 #include "scene/level.h"
 #include "scene/load.h"
+#include "scene/load_parts.h"
 
 #include <span>
 #include <string>
@@ -26,6 +27,12 @@ namespace nook
 // loadLevel() reads the same triangles in the same order, except that meshes with several materials are grouped by material.
 // Requires a triangle. Throws Error (unsupported) if the file would exceed readFile's limit. `generator`: "nook 0.1.0".
 std::string levelGlb(const Level& level, std::string_view generator);
+
+// Likewise without surroundings; appends where the level's vertices are in the file.
+std::string levelGlb(const Level& level, std::string_view generator, std::vector<GltfPlace>& places);
+
+// A binary glTF of a JSON text, a binary chunk and further chunks, with their heads. Throws Error (unsupported) above 1 GiB.
+std::string glbContainer(std::string text, std::string_view chunk, std::string_view others, const std::string& name);
 
 // Returns that centre in whole metres; 0 if all coordinates are smaller or the bounds are empty.
 glm::dvec3 glbOrigin(const Bounds& bounds);

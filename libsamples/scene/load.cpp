@@ -11,6 +11,10 @@
 #include "scene/level_glb.h"
 #include "scene/load_parts.h"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -19,6 +23,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <unordered_set>
 
@@ -58,7 +63,8 @@ void checkReadable(const std::string& path)
 }
 
 Level readLevel(const std::string& path, const LoadSettings& settings, std::vector<Finding>& findings,
-				std::optional<uint32_t> second_set = {}, std::vector<glm::vec2>* second_uvs = nullptr)
+				std::optional<uint32_t> second_set = {}, std::vector<glm::vec2>* second_uvs = nullptr,
+				std::vector<GltfPlace>* places = nullptr)
 {
 	checkReadable(path);
 	const std::string ending = endingOf(path);
@@ -98,7 +104,21 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 	{
 		*second_uvs = std::move(source.second_uvs);
 	}
+	if (places != nullptr)
+	{
+		*places = std::move(source.places);
+	}
 	return level;
+}
+
+// Cleans a level that was read again along with `second`.
+void cleanAgain(Level& again, const std::string& name, const Level& level, std::vector<glm::vec2>& second, const RunSettings& run)
+{
+	cleanLevel(again, silent(run), &second);
+	if (again.positions != level.positions) // triangles may be flipped by now (bake/bake.h)
+	{
+		throw Error(ExitCode::invalid_input, name + ": found other vertices when reading it again, expected an unchanged file");
+	}
 }
 
 // Texture coordinates, or the values in their place; empty if no vertex has any.
@@ -108,11 +128,7 @@ std::vector<glm::vec2> secondSet(const std::string& name, const LoadSettings& se
 	std::vector<Finding> findings;
 	std::vector<glm::vec2> second;
 	Level again = readLevel(name, settings, findings, set, &second);
-	cleanLevel(again, silent(run), &second);
-	if (again.positions != level.positions) // triangles may be flipped by now (bake/bake.h)
-	{
-		throw Error(ExitCode::invalid_input, name + ": found other vertices when reading it again, expected an unchanged file");
-	}
+	cleanAgain(again, name, level, second, run);
 	const bool none = std::all_of(second.begin(), second.end(), [](glm::vec2 uv) { return std::isnan(uv.x); });
 	return none ? std::vector<glm::vec2>{} : second;
 }
@@ -415,7 +431,7 @@ LoadedLevel loadLevel(Level level, bool strict, std::vector<uint32_t>& vertices,
 }
 
 std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings& settings, const Level& level,
-									 const RunSettings& run)
+									 const RunSettings& run, uint32_t set)
 {
 	const std::string ending = endingOf(name);
 	if (name.starts_with(kBuiltinPrefix) || (ending != ".gltf" && ending != ".glb"))
@@ -423,7 +439,52 @@ std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings
 		return {};
 	}
 	const ProgressCounter stage(run.progress, "texture coordinates");
-	return secondSet(name, settings, level, 1, run);
+	return secondSet(name, settings, level, set, run);
+}
+
+std::vector<GltfPlace> loadPlaces(const std::string& name, const LoadSettings& settings, const Level& level, const RunSettings& run)
+{
+	const ProgressCounter stage(run.progress, "places");
+	std::vector<Finding> findings;
+	std::vector<glm::vec2> numbers;
+	std::vector<GltfPlace> places;
+	Level again = readLevel(name, settings, findings, kPlacesSet, &numbers, &places);
+	const std::vector<glm::dvec3> positions = again.positions;
+	const std::vector<glm::vec3> normals = again.normals;
+	cleanAgain(again, name, level, numbers, run);
+	std::vector<uint32_t> now(positions.size(), UINT32_MAX);
+	for (std::size_t i = 0; i < numbers.size(); ++i)
+	{
+		now[(static_cast<std::size_t>(numbers[i].x) << 14U) + static_cast<std::size_t>(numbers[i].y)] = static_cast<uint32_t>(i);
+	}
+	std::map<std::array<double, 3>, std::vector<uint32_t>> at; // the level's vertices by position, if any is looked for
+	const auto nearest = [&](glm::dvec3 position, glm::vec3 normal)
+	{
+		for (uint32_t i = 0; at.empty() && i < again.positions.size(); ++i)
+		{
+			at[{again.positions[i].x, again.positions[i].y, again.positions[i].z}].push_back(i);
+		}
+		const std::vector<uint32_t>& there = at[{position.x, position.y, position.z}];
+		const auto further = [&](uint32_t a, uint32_t b)
+		{
+			return glm::dot(again.normals[a], normal) < glm::dot(again.normals[b], normal);
+		};
+		return there.empty() ? UINT32_MAX : *std::max_element(there.begin(), there.end(), further);
+	};
+	for (GltfPlace& place : places)
+	{
+		for (auto& [of_file, of_level] : place.vertices)
+		{
+			const uint32_t before = of_level;
+			of_level = now[before];
+			if (of_level == UINT32_MAX && glm::all(glm::lessThan(glm::abs(positions[before]), glm::dvec3(kFarthest_m))))
+			{
+				of_level = nearest(positions[before], normals[before]);
+			}
+		}
+		std::erase_if(place.vertices, [](const auto& vertex) { return vertex.second == UINT32_MAX; });
+	}
+	return places;
 }
 
 BakedValues loadBakedValues(const std::string& path, const Level& level, const RunSettings& run)

@@ -60,6 +60,16 @@ struct SourceMaterial
 	glm::dmat3 uv_of_set{1.0}; // KHR_texture_transform, MTL's -s and -o: from the set's (u, v, 1) to the mask's
 };
 
+// A primitive of a glTF file at one place in its scene, and where its vertices are in the level.
+struct GltfPlace
+{
+	std::size_t node = 0;
+	std::optional<std::size_t> instance;                 // by EXT_mesh_gpu_instancing
+	std::size_t primitive = 0;                           // of the node's mesh
+	std::size_t count = 0;                               // vertices of the primitive, used or not
+	std::vector<std::pair<uint32_t, uint32_t>> vertices; // number in the primitive, and in the level; each used one once
+};
+
 struct LevelSource
 {
 	std::vector<SourceMaterial> materials;
@@ -69,6 +79,7 @@ struct LevelSource
 	std::vector<std::string> missing;  // files that are named but missing, although not needed; may have duplicates
 	std::vector<std::string> files;    // files read, in order, without duplicates; the level first
 	std::vector<glm::vec2> second_uvs; // one per vertex if a second set was requested
+	std::vector<GltfPlace> places;     // with kPlacesSet
 };
 
 // Counts occurrences of one kind and keeps the first location.
@@ -134,6 +145,8 @@ void nameCameras(std::vector<LevelCamera>& cameras);
 
 // Special values for a texture coordinate set: values of nook bake, front and back; indexed by BakedKind.
 inline constexpr std::array<uint32_t, 3> kBakedSets{0xfffffffdU, 0xfffffffeU, 0xffffffffU};
+// Likewise: the number that the vertex has before cleanLevel(), as two parts of 14 bits, which 32-bit floats hold.
+inline constexpr uint32_t kPlacesSet = 0xfffffffcU;
 inline constexpr std::array<std::string_view, 3> kBakedNames{"_VISIBILITY", "_DIFFERENCE", "_DIFFERENCE_MASK"};
 
 // Reads a checked glTF file: appends triangles to `level`; returns materials, encoded masks, cameras and findings. `second_set`:
@@ -187,13 +200,18 @@ void appendLevel(Level& to, Level from, glm::dvec3 move);
 LoadedLevel keptLevel(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run,
 					  const std::function<LoadedLevel()>& read);
 
-// Loads a level's second texture coordinates, which masks do not use, for lightmaps.
+// Loads texture coordinates of a level, for lightmaps.
 
-// TEXCOORD_1 of a glTF, one per vertex of `level`, the result of loadLevel() for the same name and settings; NaN for vertices
-// without. The level's vertices do not depend on these coordinates.
+// TEXCOORD_1 of a glTF, or another set, one per vertex of `level`, the result of loadLevel() for the same name and settings; NaN
+// for vertices without. The level's vertices do not depend on these coordinates.
 // Empty if nothing has any, and for other formats. Reads the file again; throws like loadLevel(), and Error (invalid_input) if the
 // file has changed.
 std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings& settings, const Level& level,
-									 const RunSettings& run);
+									 const RunSettings& run, uint32_t set = 1);
+
+// Where the vertices of `level`, loaded from a glTF file, are in that file. A vertex of dropped triangles alone gets the level's
+// vertex at its position, with the nearest normal; none if there is none. Reads the file again, as loadSecondUvs() does.
+std::vector<GltfPlace> loadPlaces(const std::string& name, const LoadSettings& settings, const Level& level,
+								  const RunSettings& run);
 
 } // namespace nook

@@ -220,9 +220,9 @@ mkdir kept_folder
 works '"shared_meshes": 1' bake kept_two.gltf --radius 1 --rays 32 -o kept_2.gltf -o kept_2.glb -o kept_folder/2.gltf --json -
 additions kept_two.gltf kept_2.gltf
 grep -q '"uri": "../none%20here.png"' kept_folder/2.gltf || problem "kept_folder/2.gltf: found other names than those from there"
-works '' info kept_folder/2.gltf
+works '' info kept_folder/2.gltf --allow-outside
 works '^baked: visibility, radius 1.0 m, falloff hard, 32 rays' info kept_2.glb
-works '^bake command +nook bake kept_two.gltf --radius 1 --rays 32' info kept_2.gltf
+works '^bake command: nook bake kept_two.gltf --radius 1 --rays 32' info kept_2.gltf
 works '' bake kept_2.glb --radius 1 --rays 32 --to color -o kept_3.glb --json s.json
 works '"mesh_copies": 0' bake kept_3.glb --radius 1 --rays 32 --instances shared -o kept_4.glb --json -
 works '' bake kept_two.gltf --radius 1 --rays 32 -o kept_5.gltf --json s.json
@@ -235,7 +235,7 @@ for to in color color-alpha texcoord:1 texcoord:3 custom:AO visibility; do
 	additions kept_two.gltf kept_7.gltf COLOR_0
 	works '' info kept_7.gltf
 done
-fails 5 'nodes\[0\].extras: found no object' bake kept_two.gltf --radius 1 --instances attribute -o b.gltf
+fails 5 'kept_two.gltf: nodes\[0\].extras: found no object' bake kept_two.gltf --radius 1 --instances attribute -o b.gltf
 sed 's/"extras": 3/"extras": {"a": 3}/' kept_two.gltf >kept_other.gltf
 works '"mesh_copies": 0' bake kept_other.gltf --radius 1 --rays 32 --instances attribute -o kept_7.gltf --json -
 additions kept_other.gltf kept_7.gltf
@@ -245,19 +245,19 @@ works '' bake kept_two.gltf --radius 1 --rays 32 -o values.csv -o values.npy -o 
 checks=$((checks + 1))
 [ "$(wc -l <values.csv)" -eq 9 ] || problem "values.csv: found $(wc -l <values.csv) lines, expected two nodes of four vertices"
 there s.json values.csv values.json values.npy
-fails 3 'TEXCOORD_0: found it in use, expected a set that is free, as --to texcoord:1' bake kept_two.gltf --radius 1 --to texcoord:0 -o b.gltf
+fails 3 'kept_two.gltf: TEXCOORD_0: found it in use, expected a set that is free, as --to texcoord:1' bake kept_two.gltf --radius 1 --to texcoord:0 -o b.gltf
 sed 's/"COLOR_0"/"_VISIBILITY"/' kept_two.gltf >kept_other.gltf
-fails 3 '_VISIBILITY: found an accessor of VEC3, component type 5126, expected SCALAR' bake kept_other.gltf --radius 1 -o b.gltf
+fails 3 'kept_other.gltf: _VISIBILITY: found an accessor of VEC3, component type 5126, expected SCALAR' bake kept_other.gltf --radius 1 -o b.gltf
 sed 's/{"by": "hand"}/4/' kept_two.gltf >kept_other.gltf
-fails 5 'asset.extras: found no object' bake kept_other.gltf --radius 1 -o b.gltf
+fails 5 'kept_other.gltf: asset.extras: found no object' bake kept_other.gltf --radius 1 -o b.gltf
 sed 's/"path": *"/"path": "\/nothing/' kept_5.gltf >kept_other.gltf
-fails 3 'asset.extras.nook.undo: found no patch of this file' bake kept_other.gltf --radius 1 -o b.gltf
+fails 3 'kept_other.gltf: asset.extras.nook.undo: found no patch of this file' bake kept_other.gltf --radius 1 -o b.gltf
 for to in texcoord texcoord:8 custom: 'custom:a b' color:1 grey; do
 	fails 1 '--to: found' bake kept_two.gltf --radius 1 --to "$to" -o b.gltf
 done
 fails 1 'b.gltf: found the ending of a glTF in text' bake builtin:cornell --radius 1 -o b.gltf
 fails 1 '--instances: found with --max-error' bake kept_two.gltf --radius 1 --max-error 0.1 --instances shared -o b.glb
-fails 1 'kept_two.bin: found the same file' bake kept_two.gltf --radius 1 -o b.glb --json kept_two.bin
+fails 1 'kept_two.bin: named twice' bake kept_two.gltf --radius 1 -o b.glb --json kept_two.bin
 fails 1 '--max-vertices: found without' bake builtin:cornell --radius 1 --max-vertices 100 -o b.glb
 fails 1 '--max-error: found with --fit points' bake builtin:cornell --radius 1 --max-error 0.1 --fit points -o b.glb
 fails 1 '--max-error: found' bake builtin:cornell --radius 1 --max-error 0 -o b.glb

@@ -35,10 +35,10 @@ constexpr std::array<std::string_view, 7> kAllBakeFormats{".glb", ".gltf", ".csv
 constexpr std::array<std::string_view, 5> kBakeFormats{".glb", ".gltf", ".csv", ".npy", ".json"};
 constexpr std::array<std::string_view, 2> kTextureFormats{".glb", ".gltf"};
 constexpr std::array<std::string_view, 2> kProbeFormats{".ktx2", ".glsl"};
-constexpr std::array<std::string_view, 3> kBakeFalloffs{"hard", "linear", "alchemy"};    // of Falloff, in its order
-constexpr std::array<std::string_view, 2> kBakeFits{"surface", "points"};                // of BakeFit
-constexpr std::array<std::string_view, 2> kBakeSides{"separate", "mean"};                // of BakeSides
-constexpr std::array<std::string_view, 2> kBakeNormals{"geometric", "interpolated"};     // of NormalKind
+constexpr std::array<std::string_view, 3> kBakeFalloffs{"hard", "linear", "alchemy"};        // of Falloff, in its order
+constexpr std::array<std::string_view, 2> kBakeFits{"surface", "points"};                    // of BakeFit
+constexpr std::array<std::string_view, 2> kBakeSides{"separate", "mean"};                    // of BakeSides
+constexpr std::array<std::string_view, 2> kBakeNormals{"geometric", "interpolated"};         // of NormalKind
 constexpr std::array<std::string_view, 3> kBakeInstances{"separate", "shared", "attribute"}; // of BakeInstances
 constexpr std::array<std::string_view, 6> kBakeTargets{"visibility", "color", "color-alpha", "texcoord", "custom", "texture"};
 constexpr int kMostSet = 7;            // of texture coordinates

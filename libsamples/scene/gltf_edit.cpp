@@ -927,8 +927,8 @@ private:
 				const std::string uri = textIn(item, "uri");
 				if (!uri.empty() && !uri.starts_with("data:") && uri.find("://") == std::string::npos)
 				{
-					const std::filesystem::path file =
-						std::filesystem::weakly_canonical(besideLevel(m_file.path, unescaped(uri)), failed);
+					const std::filesystem::path file = std::filesystem::weakly_canonical(
+						std::filesystem::absolute(besideLevel(m_file.path, unescaped(uri))), failed);
 					item["uri"] = escapedUri(std::filesystem::relative(file, to, failed).generic_string());
 				}
 			}

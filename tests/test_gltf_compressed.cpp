@@ -290,6 +290,9 @@ TEST_CASE("scene: a mask in a KTX2 file of plain texels is read; others name the
 	CHECK(maskedCube(basis).refusal().starts_with("5: image 0: KTX2: found texels compressed by BasisLZ"));
 
 	// Every field of the header and the level, and every truncation: a picture of that many texels, or a one-line error.
+	EncodedAlpha as;
+	as.name = "a.ktx2";
+	as.channel = MaskChannel::alpha;
 	std::size_t refused = 0;
 	for (std::size_t at = 12; at < 104; ++at)
 	{
@@ -299,7 +302,7 @@ TEST_CASE("scene: a mask in a KTX2 file of plain texels is read; others name the
 			changed[at] = value;
 			try
 			{
-				const AlphaImage image = alphaOfKtx2(changed, "a.ktx2", MaskChannel::alpha, 4096);
+				const AlphaImage image = *alphaOfKtx2(changed, as, 4096).image;
 				CHECK(image.alpha.size() == static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px));
 			}
 			catch (const Error& error)
@@ -312,8 +315,7 @@ TEST_CASE("scene: a mask in a KTX2 file of plain texels is read; others name the
 	CHECK(refused > 100);
 	for (std::size_t size = 12; size < picture.size(); ++size)
 	{
-		CHECK_THROWS_AS(alphaOfKtx2(std::string_view(picture).substr(0, size), "a.ktx2", MaskChannel::alpha, 4096), Error);
+		CHECK_THROWS_AS(alphaOfKtx2(std::string_view(picture).substr(0, size), as, 4096), Error);
 	}
-	CHECK_THROWS_WITH(alphaOfKtx2(picture, "a.ktx2", MaskChannel::alpha, 63),
-					  "a.ktx2: found 8x8 texels, expected at most 63 (max-texels)");
+	CHECK_THROWS_WITH(alphaOfKtx2(picture, as, 63), "a.ktx2: found 8x8 texels, expected at most 63 (max-texels)");
 }

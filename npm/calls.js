@@ -363,7 +363,8 @@ export async function measure(points, options = {}) {
 }
 
 export async function emit(options) {
-	const { io, patterns = [], file = 'nook.glsl', words: command, others } = split('emit', options, 'patterns', 'file');
+	const language = ['hlsl', 'wgsl'].find(name => options?.[name] !== undefined) ?? 'glsl';
+	const { io, patterns = [], file = `nook.${language}`, words: command, others } = split('emit', options, 'patterns', 'file');
 	if (!Array.isArray(patterns)) {
 		refuse('patterns', nameOf(patterns), 'an array of what pattern() or tile() returned');
 	}
@@ -382,5 +383,5 @@ export async function emit(options) {
 	const samples = given.length > 0 ? ['--patterns', given.map(pair => pair[0]).join(',')] : [];
 	const answer = await succeed(['emit', ...command, ...samples, ...outputs.flatMap(output => ['-o', output])],
 		{ ...io, files: Object.fromEntries(given), take: outputs });
-	return { glsl: answer.files[file], header: answer.files[header], script: answer.files[script] };
+	return { [language]: answer.files[file], header: answer.files[header], script: answer.files[script] };
 }

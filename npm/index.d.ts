@@ -201,7 +201,11 @@ export type Method = 'vo-line' | 'vo-point' | 'vo-area' | 'alchemy' | 'statvo' |
 /** Numbers of `nook emit`, whose page says what each does and which method takes it. */
 export interface EmitOptions extends Watch {
 	methods: Method | `${Method},${string}` | readonly Method[];
-	glsl: '330' | '430' | 'es300' | 'vulkan' | 330 | 430;
+	/** One of glsl, hlsl and wgsl. */
+	glsl?: '330' | '430' | 'es300' | 'vulkan' | 330 | 430;
+	hlsl?: '60' | 60;
+	wgsl?: true;
+	textures?: 'fixed' | 'macros' | 'separate';
 	/** Samples of each method but statvo and slices, in the same order. */
 	patterns?: readonly (MadePattern | MadeTile | string)[];
 	counts?: number | string | readonly number[];
@@ -235,8 +239,8 @@ export interface EmitOptions extends Watch {
 	taps?: number;
 	resolution?: 'full' | 'half';
 	gather?: boolean;
-	main?: boolean;
-	/** The name of the GLSL file in its own text: nook.glsl where absent. */
+	main?: 'fragment' | 'compute';
+	/** The name of the module in its own text: nook.glsl, nook.hlsl or nook.wgsl where absent. */
 	file?: string;
 }
 
@@ -265,7 +269,9 @@ export function measure(points: Points | MadePattern, options?: MeasureOptions):
 export function measure(tile: MadeTile, options?: MeasureOptions): Promise<TileMeasures>;
 export function measure(text: string, options?: MeasureOptions): Promise<PatternMeasures | TileMeasures>;
 /** `header`, the C++ that fills the block, and `script`, the JavaScript, are absent for aov and aov-mask. */
-export function emit(options: EmitOptions): Promise<{ glsl: string; header?: string; script?: string }>;
+export function emit(options: EmitOptions & { glsl: unknown }): Promise<{ glsl: string; header?: string; script?: string }>;
+export function emit(options: EmitOptions & { hlsl: unknown }): Promise<{ hlsl: string; header?: string; script?: string }>;
+export function emit(options: EmitOptions & { wgsl: true }): Promise<{ wgsl: string; header?: string; script?: string }>;
 /** A run of the program with its own words. Throws nothing for an exit code. */
 export function nook(command: readonly (string | number)[], io?: RunOptions): Promise<Answer>;
 /** Compiles ahead of the first call. `source`: where nook.wasm does not lie beside the module. */

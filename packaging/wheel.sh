@@ -22,7 +22,7 @@ library=$(find "$installed" -name "libnook.so.$abi" | head -n 1)
 cp -L "$library" "$libs/libnook.so.$abi"
 cp "$(dirname "$library")/nook/"nook_*_worker "$libs"
 
-# What every Linux has stays outside, and so does libGL's part, which belongs to the machine's driver.
+# Libraries that every Linux has stay outside, and so does libGL, which belongs to the machine's driver.
 system='^(linux-vdso|ld-linux|libc|libm|libdl|libpthread|librt|libresolv|libutil|libgcc_s|libstdc\+\+|libGL|libEGL|libOpenGL|libGLX|libGLdispatch|libX11|libxcb)[.-]'
 for file in "$libs"/*; do
 	ldd "$file" | sed -n 's/^\t\(.*\) => \(\/.*\) (0x.*/\1 \2/p'

@@ -64,7 +64,7 @@ node - said <<-'JS' >log 2>&1 || problem "the page: $(head -c 600 log)"
 	]);
 JS
 
-# The same depths, drawn by nook shade.
+# nook shade draws these depths.
 node "$here/live_page_files.cjs" read <said || problem "the page: $(head -c 300 said)"
 projection=$(node -e 'console.log(JSON.parse(require("fs").readFileSync("said", "utf8")).projection.join(" "))')
 oiiotool read/v0.tif --chnames Z -o depth.exr || problem "depth: not read"

@@ -32,7 +32,7 @@ nook_array rowsOf(const std::vector<double>& values)
 	return array(values.data(), {values.size() / 3, 3});
 }
 
-// What programs were compiled with: another layout is another NOOK_ABI.
+// Programs were compiled with this layout: another one needs another NOOK_ABI.
 static_assert(NOOK_ABI == 1 && sizeof(nook_array) == 48 && offsetof(nook_array, type) == 8 && offsetof(nook_array, shape) == 16);
 
 // Status of making a level, which is destroyed again.

@@ -284,7 +284,7 @@ Image imageOf(const nook_array* array, const char* name, const char* channel, do
 	return image;
 }
 
-// As the program's options take matrices.
+// Writes a matrix as the program's options take it.
 std::string matrixText(const nook_array* array, const char* name)
 {
 	std::string text;

@@ -331,7 +331,7 @@ GltfFile fileOf(const BakeOptions& options)
 	return file;
 }
 
-// What asset.extras says of the bake: the same for the same command, wherever it runs.
+// The record in asset.extras: the same for the same command, wherever it runs.
 GltfBake bakeOf(const BakeOptions& options)
 {
 	const BakeSettings& settings = options.settings;

@@ -173,7 +173,7 @@ template <class Path> std::string describeAsset(const Path& path)
 	return {};
 }
 
-// What nook bake wrote into a file, if it did. A template, like the next.
+// The record of nook bake in a file, if there is one. A template, like the next.
 void describeBake(const auto& record, Facts& facts)
 {
 	const auto text = [&](const char* name)

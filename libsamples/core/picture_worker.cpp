@@ -124,7 +124,7 @@ public:
 		png_destroy_read_struct(&m_png, &m_info, nullptr);
 	}
 
-	// Of interlaced files, palettes and small integers, the values are as if they were stored otherwise: `is_plain` tells.
+	// Interlaced files, palettes and small integers give the values that a plain file would: `is_plain` tells.
 	bool readHeader()
 	{
 		if (m_info == nullptr || setjmp(m_back) != 0)

@@ -124,7 +124,7 @@ std::string moduleHeader(const ModuleSettings& settings, const EmitContext& cont
 // members of the block, the texels, the recipes' settings, and the GLSL if given.
 std::string moduleScript(const ModuleSettings& settings, const EmitContext& context, std::string_view glsl);
 
-// The same in C#, for Unity among others, and in Python.
+// The script in C#, for Unity among others, and in Python.
 std::string moduleSharp(const ModuleSettings& settings, const EmitContext& context);
 std::string modulePython(const ModuleSettings& settings, const EmitContext& context);
 

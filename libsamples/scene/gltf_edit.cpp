@@ -117,7 +117,7 @@ struct ValueGroup
 	std::vector<std::pair<std::string, std::size_t>> accessors;
 };
 
-// A mesh with values of its own: at one node, or at all.
+// A mesh with separate values: at one node, or at all.
 struct MeshUnit
 {
 	std::size_t mesh = 0;
@@ -268,7 +268,7 @@ private:
 		return m_gathered ? m_gathered_bytes : m_file.chunk;
 	}
 
-	// What another program changes when it writes the file.
+	// Changes when another program writes the file.
 	Document stateOf()
 	{
 		std::size_t bytes = 0;
@@ -605,7 +605,7 @@ private:
 		}
 	}
 
-	// What a colour shows of a vertex: the mean of its sides.
+	// A colour shows the mean of a vertex's sides.
 	float colorOf(const ValueGroup& group, std::size_t v) const
 	{
 		const float front = group.numbers[v * m_width];
@@ -729,7 +729,7 @@ private:
 		}
 	}
 
-	// What the level's vertices have in the file.
+	// Gives the level's vertices the values they have in the file.
 	void store(const std::vector<MeshUnit>& units, GltfBaked& made)
 	{
 		const bool color = m_bake.target == BakeTarget::color || m_bake.target == BakeTarget::color_alpha;

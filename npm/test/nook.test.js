@@ -44,6 +44,8 @@ test('tile and emit: from what pattern returned', async () => {
 	const script = await import(`data:text/javascript,${encodeURIComponent(module.script)}`);
 	assert.equal(script.glsl, module.glsl);
 	assert.equal(script.fill([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -1, 0], { width: 640, height: 360 }).byteLength, script.blockBytes);
+	assert.match((await emit({ methods: 'slices', wgsl: true })).wgsl, /fn nookSlices\(/);
+	assert.match((await emit({ methods: 'slices', hlsl: 60 })).hlsl, /float nookSlices\(/);
 	const volumes = await emit({ methods: 'aov', glsl: 330 });
 	assert.match(volumes.glsl, /void main/);
 	assert.equal(volumes.header, undefined);

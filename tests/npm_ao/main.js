@@ -65,7 +65,7 @@ function read(texture, renderer, channel = 0) {
 	return Float32Array.from({ length: width * height }, (_, i) => four[4 * ((height - 1 - Math.floor(i / width)) * width + i % width)]);
 }
 
-// What a composer of three.js shows: the pass's own picture and, in `colours`, the composer's.
+// Pictures of a three.js composer: the pass's own and, in `colours`, the composer's.
 function drawn(options = {}, { on = renderer, from = camera, frames = 1, before = [], after = [], channel = 0 } = {}) {
 	const pass = new NookPass(scene, from, width, height, options);
 	const composer = new EffectComposer(on, new THREE.WebGLRenderTarget(width, height, { type: THREE.HalfFloatType }));

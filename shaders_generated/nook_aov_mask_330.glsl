@@ -36,6 +36,8 @@
 // a little, and which part is lost depends on the faces.
 // Target: unsigned integers, R32UI, RG32UI or RGBA32UI for up to 32, 64 and 128 directions, a second RGBA32UI for more; cleared to 0;
 // no blending, but glEnable(GL_COLOR_LOGIC_OP), glLogicOp(GL_OR). The resolve stage reads them as nook_sums and nook_more_sums.
+// Once, before the first frame: draw a triangle over a texture RGBA32UI of 64 x 64 texels, 64 x 128 above 128 directions, with a
+// fragment stage that defines NOOK_HALF_SPACES. The fragment stage of the volumes reads it as nook_half_spaces.
 // With Camera::every above 1 only one pixel of every x every is drawn: the target has ceil(width / every) columns and
 // ceil(height / every) rows, and its depth buffer holds the depths of those pixels. nook_depths and nook_normals always are those of the
 // whole picture. After NOOK_RESOLVE, fill the whole picture, whose target has a stencil buffer:
@@ -494,183 +496,151 @@ float nookFalloff(int count, vec3 front, float height, float reach, float share)
 	return g;
 }
 
-const vec4 nook_directions[128] = vec4[128](
-	vec4(6.25e-02, 0e+00, 9.9804497e-01, 3.90625e-03),
-	vec4(-7.9822525e-02, 7.312397e-02, 9.9412334e-01, 2.8453624e-01),
-	vec4(1.2218117e-02, -1.3921914e-01, 9.901862e-01, 5.6516623e-01),
-	vec4(1.0061112e-01, 1.3122939e-01, 9.8623335e-01, 8.457962e-01),
-	vec4(-1.8463378e-01, -3.2659117e-02, 9.822646e-01, 1.2642625e-01),
-	vec4(1.7490123e-01, -1.1125785e-01, 9.7827977e-01, 4.0705624e-01),
-	vec4(-5.850104e-02, 2.1762095e-01, 9.7427857e-01, 6.8768626e-01),
-	vec4(-1.11567825e-01, -2.1481706e-01, 9.702609e-01, 9.6831626e-01),
-	vec4(2.4205756e-01, 8.839903e-02, 9.662266e-01, 2.4894625e-01),
-	vec4(-2.5182056e-01, 1.0394786e-01, 9.6217525e-01, 5.2957624e-01),
-	vec4(1.2139415e-01, -2.5941223e-01, 9.581069e-01, 8.1020623e-01),
-	vec4(8.970719e-02, 2.8600064e-01, 9.540211e-01, 9.083625e-02),
-	vec4(-2.703785e-01, -1.5668987e-01, 9.4991773e-01, 3.7146625e-01),
-	vec4(3.1718478e-01, -6.973218e-02, 9.457966e-01, 6.520963e-01),
-	vec4(-1.9357292e-01, 2.7533758e-01, 9.416574e-01, 9.3272626e-01),
-	vec4(-4.4719826e-02, -3.4509984e-01, 9.375e-01, 2.1335626e-01),
-	vec4(2.7453586e-01, 2.3137914e-01, 9.3332404e-01, 4.9398625e-01),
-	vec4(-3.6943924e-01, 1.5277472e-02, 9.291293e-01, 7.7461624e-01),
-	vec4(2.6947758e-01, -2.6816615e-01, 9.2491555e-01, 5.524625e-02),
-	vec4(-1.8029094e-02, 3.8989577e-01, 9.206825e-01, 3.3587626e-01),
-	vec4(-2.5640878e-01, -3.072634e-01, 9.164299e-01, 6.165063e-01),
-	vec4(4.061798e-01, 5.4650918e-02, 9.121575e-01, 8.971363e-01),
-	vec4(-3.441553e-01, 2.3945431e-01, 9.078649e-01, 1.7776625e-01),
-	vec4(9.404303e-02, -4.1803068e-01, 9.03552e-01, 4.5839626e-01),
-	vec4(2.1751663e-01, 3.7959552e-01, 8.9921844e-01, 7.3902625e-01),
-	vec4(-4.252242e-01, -1.3565812e-01, 8.9486384e-01, 1.965625e-02),
-	vec4(4.130512e-01, -1.9084013e-01, 8.904879e-01, 3.0028626e-01),
-	vec4(-1.789441e-01, 4.275778e-01, 8.8609046e-01, 5.809162e-01),
-	vec4(-1.5970367e-01, -4.4401687e-01, 8.81671e-01, 8.615463e-01),
-	vec4(4.2495432e-01, 2.2334407e-01, 8.772293e-01, 1.4217626e-01),
-	vec4(-4.7201732e-01, 1.2442225e-01, 8.72765e-01, 4.2280626e-01),
-	vec4(2.682979e-01, -4.1726488e-01, 8.682777e-01, 7.0343626e-01),
-	vec4(8.5347146e-02, 4.966106e-01, 8.637672e-01, 9.8406625e-01),
-	vec4(-4.044706e-01, -3.1324476e-01, 8.5923296e-01, 2.6469624e-01),
-	vec4(5.173914e-01, -4.2864818e-02, 8.5467464e-01, 5.4532623e-01),
-	vec4(-3.5762653e-01, 3.8658378e-01, 8.5009193e-01, 8.259562e-01),
-	vec4(2.6050012e-03, -5.339939e-01, 8.454843e-01, 1.0658625e-01),
-	vec4(3.636685e-01, 4.0089145e-01, 8.408515e-01, 3.8721624e-01),
-	vec4(-5.4609495e-01, -5.0611954e-02, 8.36193e-01, 6.6784626e-01),
-	vec4(4.4249845e-01, -3.3584055e-01, 8.315084e-01, 9.4847625e-01),
-	vec4(-1.00678265e-01, 5.534168e-01, 8.267973e-01, 2.2910625e-01),
-	vec4(-3.0326673e-01, -4.819212e-01, 8.2205915e-01, 5.0973624e-01),
-	vec4(5.5572945e-01, 1.523024e-01, 8.172935e-01, 7.9036623e-01),
-	vec4(-5.1865256e-01, 2.6616395e-01, 8.125e-01, 7.099625e-02),
-	vec4(2.0496316e-01, -5.528529e-01, 8.07678e-01, 3.5162625e-01),
-	vec4(2.2479735e-01, 5.522091e-01, 8.0282706e-01, 6.3225627e-01),
-	vec4(-5.4465884e-01, -2.58124e-01, 7.979466e-01, 9.1288626e-01),
-	vec4(5.821351e-01, -1.7947847e-01, 7.930361e-01, 1.9351625e-01),
-	vec4(-3.1123766e-01, 5.310719e-01, 7.88095e-01, 4.7414625e-01),
-	vec4(-1.3056248e-01, -6.080067e-01, 7.831228e-01, 7.5477624e-01),
-	vec4(5.120707e-01, 3.6375105e-01, 7.781187e-01, 3.540625e-02),
-	vec4(-6.294363e-01, 7.8445435e-02, 7.730823e-01, 3.1603625e-01),
-	vec4(4.1511005e-01, -4.8768833e-01, 7.680129e-01, 5.966663e-01),
-	vec4(2.3560727e-02, 6.4607555e-01, 7.629097e-01, 8.7729627e-01),
-	vec4(-4.5801213e-01, -4.6476462e-01, 7.577722e-01, 1.5792625e-01),
-	vec4(6.576193e-01, 3.362452e-02, 7.5259966e-01, 4.3855625e-01),
-	vec4(-5.121738e-01, 4.231835e-01, 7.473913e-01, 7.1918625e-01),
-	vec4(9.261354e-02, -6.6380835e-01, 7.421464e-01, 9.9981624e-01),
-	vec4(3.8339674e-01, 5.5681074e-01, 7.3686415e-01, 2.8044626e-01),
-	vec4(-6.6443217e-01, -1.5288429e-01, 7.315437e-01, 5.610762e-01),
-	vec4(5.981676e-01, -3.3889785e-01, 7.2618437e-01, 8.417063e-01),
-	vec4(-2.1389407e-01, 6.5933156e-01, 7.2078514e-01, 1.2233625e-01),
-	vec4(-2.8998244e-01, -6.3576055e-01, 7.153452e-01, 4.0296626e-01),
-	vec4(6.4839983e-01, 2.7508432e-01, 7.0986354e-01, 6.8359625e-01),
-	vec4(-6.69134e-01, 2.3699354e-01, 7.043392e-01, 9.6422625e-01),
-	vec4(3.3588564e-01, -6.31585e-01, 6.9877124e-01, 2.4485625e-01),
-	vec4(1.8031883e-01, 6.978656e-01, 6.931585e-01, 5.2548623e-01),
-	vec4(-6.0889006e-01, -3.9572296e-01, 6.875e-01, 8.061162e-01),
-	vec4(7.215699e-01, -1.20387495e-01, 6.817945e-01, 8.674625e-02),
-	vec4(-4.5402077e-01, 5.8037394e-01, 6.760409e-01, 3.6737624e-01),
-	vec4(-5.7666615e-02, -7.3990256e-01, 6.7023784e-01, 6.4800626e-01),
-	vec4(5.461513e-01, 5.1020837e-01, 6.643841e-01, 9.2863625e-01),
-	vec4(-7.5256383e-01, -7.342692e-03, 6.584784e-01, 2.0926625e-01),
-	vec4(5.6372505e-01, -5.0639194e-01, 6.5251917e-01, 4.8989624e-01),
-	vec4(-7.410954e-02, 7.5930166e-01, 6.46505e-01, 7.7052623e-01),
-	vec4(-4.6132013e-01, -6.1402565e-01, 6.4043444e-01, 5.115625e-02),
-	vec4(7.599146e-01, 1.420778e-01, 6.343057e-01, 3.3178625e-01),
-	vec4(-6.605852e-01, 4.1121277e-01, 6.281172e-01, 6.1241627e-01),
-	vec4(2.106709e-01, -7.542539e-01, 6.218671e-01, 8.9304626e-01),
-	vec4(3.5639766e-01, 7.029043e-01, 6.155536e-01, 1.7367625e-01),
-	vec4(-7.4222606e-01, -2.792968e-01, 6.0917467e-01, 4.5430624e-01),
-	vec4(7.4051374e-01, -2.9725102e-01, 6.027282e-01, 7.3493624e-01),
-	vec4(-3.473532e-01, 7.237935e-01, 5.96212e-01, 1.556625e-02),
-	vec4(-2.3419462e-01, -7.729791e-01, 5.896238e-01, 2.9619625e-01),
-	vec4(6.989759e-01, 4.1423288e-01, 5.829612e-01, 5.768263e-01),
-	vec4(-7.9990494e-01, 1.6769256e-01, 5.762215e-01, 8.5745627e-01),
-	vec4(4.7932908e-01, -6.67851e-01, 5.694021e-01, 1.3808624e-01),
-	vec4(9.824752e-02, 8.209392e-01, 5.625e-01, 4.1871625e-01),
-	vec4(-6.305537e-01, -5.420408e-01, 5.5551213e-01, 6.9934624e-01),
-	vec4(8.3577627e-01, -2.6396735e-02, 5.484353e-01, 9.7997624e-01),
-	vec4(-6.017786e-01, 5.872765e-01, 5.412659e-01, 2.6060626e-01),
-	vec4(4.7292396e-02, -8.441606e-01, 5.340002e-01, 5.412362e-01),
-	vec4(5.3826785e-01, 6.579696e-01, 5.2663434e-01, 8.218663e-01),
-	vec4(-8.458897e-01, -1.22226976e-01, 5.1916397e-01, 1.0249625e-01),
-	vec4(7.100628e-01, -4.8383063e-01, 5.115845e-01, 3.8312626e-01),
-	vec4(-1.9779359e-01, 8.4081596e-01, 5.038911e-01, 6.6375625e-01),
-	vec4(-4.2432046e-01, -7.5753444e-01, 4.9607837e-01, 9.4438624e-01),
-	vec4(8.288493e-01, 2.7336344e-01, 4.881406e-01, 2.2501625e-01),
-	vec4(-7.998928e-01, 3.6014277e-01, 4.800716e-01, 5.056462e-01),
-	vec4(3.4829774e-01, -8.099583e-01, 4.7186464e-01, 7.862762e-01),
-	vec4(2.9175016e-01, 8.366828e-01, 4.635124e-01, 6.690625e-02),
-	vec4(-7.8417104e-01, -4.2195317e-01, 4.5500687e-01, 3.4753624e-01),
-	vec4(8.6749065e-01, -2.1963884e-01, 4.4633928e-01, 6.2816626e-01),
-	vec4(-4.9368745e-01, 7.5157595e-01, 4.375e-01, 9.0879625e-01),
-	vec4(-1.4434482e-01, -8.9194775e-01, 4.2847842e-01, 1.8942624e-01),
-	vec4(7.123214e-01, 5.6286496e-01, 4.1926274e-01, 4.7005624e-01),
-	vec4(-9.097346e-01, 6.6439755e-02, 4.098399e-01, 7.506862e-01),
-	vec4(6.288623e-01, -6.6661525e-01, 4.0019527e-01, 3.131625e-02),
-	vec4(-1.3473606e-02, 9.205839e-01, 3.9031237e-01, 3.1194624e-01),
-	vec4(-6.1472386e-01, -6.91074e-01, 3.8017267e-01, 5.9257627e-01),
-	vec4(9.2428386e-01, 9.476626e-02, 3.69755e-01, 8.7320626e-01),
-	vec4(-7.4891776e-01, 5.569703e-01, 3.5903516e-01, 1.5383625e-01),
-	vec4(1.7678808e-01, -9.206803e-01, 3.4798527e-01, 4.3446624e-01),
-	vec4(4.9373242e-01, 8.0183977e-01, 3.365728e-01, 7.1509624e-01),
-	vec4(-9.0967906e-01, -2.5887316e-01, 3.247595e-01, 9.957262e-01),
-	vec4(8.4932e-01, -4.2544007e-01, 3.125e-01, 2.7635625e-01),
-	vec4(-3.4034538e-01, 8.9124703e-01, 2.9973948e-01, 5.569863e-01),
-	vec4(-3.5257214e-01, -8.908769e-01, 2.86411e-01, 8.3761626e-01),
-	vec4(8.6541367e-01, 4.2052394e-01, 2.724312e-01, 1.1824625e-01),
-	vec4(-9.260719e-01, 2.7565306e-01, 2.576941e-01, 3.9887625e-01),
-	vec4(4.9872935e-01, -8.3227116e-01, 2.4206147e-01, 6.7950624e-01),
-	vec4(1.9524874e-01, 9.5451385e-01, 2.2534695e-01, 9.6013623e-01),
-	vec4(-7.9197437e-01, -5.74289e-01, 2.0728905e-01, 2.4076626e-01),
-	vec4(9.758628e-01, -1.11962356e-01, 1.875e-01, 5.213963e-01),
-	vec4(-6.4654315e-01, 7.4474037e-01, 1.6535945e-01, 8.020263e-01),
-	vec4(-2.6429586e-02, -9.898334e-01, 1.3975425e-01, 8.265625e-02),
-	vec4(6.908473e-01, 7.1485054e-01, 1.0825317e-01, 3.6328626e-01),
-	vec4(-9.9619824e-01, -6.068637e-02, 6.25e-02, 6.4391625e-01));
-vec4 nookDirection(int i)
+const vec3 nook_rays[128] = vec3[128](
+	vec3(6.225586e-02, 0e+00, 9.9414635e-01),
+	vec3(-5.7110123e-02, 5.231755e-02, 7.1125925e-01),
+	vec3(5.31285e-03, -6.053718e-02, 4.305664e-01),
+	vec3(1.5514614e-02, 2.0236066e-02, 1.5208091e-01),
+	vec3(-1.6129123e-01, -2.8530149e-02, 8.5808057e-01),
+	vec3(1.037066e-01, -6.596965e-02, 5.800649e-01),
+	vec3(-1.8270679e-02, 6.7966014e-02, 3.0428058e-01),
+	vec3(-3.5348863e-03, -6.8062088e-03, 3.0741498e-02),
+	vec3(1.8179823e-01, 6.639242e-02, 7.256881e-01),
+	vec3(-1.1846238e-01, 4.8899543e-02, 4.526301e-01),
+	vec3(2.3039853e-02, -4.9234822e-02, 1.8184271e-01),
+	vec3(8.1558526e-02, 2.6002142e-01, 8.673614e-01),
+	vec3(-1.69942e-01, -9.848487e-02, 5.970553e-01),
+	vec3(1.1034977e-01, -2.4260087e-02, 3.2904616e-01),
+	vec3(-1.3022373e-02, 1.8522987e-02, 6.3348815e-02),
+	vec3(-3.5178572e-02, -2.7147064e-01, 7.374785e-01),
+	vec3(1.3891892e-01, 1.17081024e-01, 4.722748e-01),
+	vec3(-8.32656e-02, 3.4432942e-03, 2.0941065e-01),
+	vec3(2.5458995e-01, -2.5335097e-01, 8.7381744e-01),
+	vec3(-1.197355e-02, 2.5893906e-01, 6.1144716e-01),
+	vec3(-9.833116e-02, -1.17833585e-01, 3.514451e-01),
+	vec3(4.178117e-02, 5.621597e-03, 9.382792e-02),
+	vec3(-2.8297612e-01, 1.9688742e-01, 7.464772e-01),
+	vec3(5.0934058e-02, -2.2640698e-01, 4.8936716e-01),
+	vec3(5.676613e-02, 9.906447e-02, 2.3467241e-01),
+	vec3(-4.1686592e-01, -1.3299158e-01, 8.7727416e-01),
+	vec3(2.890176e-01, -1.3353345e-01, 6.230866e-01),
+	vec3(-7.499257e-02, 1.7919092e-01, 3.7134615e-01),
+	vec3(-2.2111569e-02, -6.1475787e-02, 1.2207063e-01),
+	vec3(3.645359e-01, 1.9158985e-01, 7.525081e-01),
+	vec3(-2.7244544e-01, 7.1815744e-02, 5.037545e-01),
+	vec3(7.956743e-02, -1.23745635e-01, 2.574997e-01),
+	vec3(1.3599002e-03, 7.9128705e-03, 1.3763052e-02),
+	vec3(-2.9740876e-01, -2.3033005e-01, 6.3179725e-01),
+	vec3(2.3524429e-01, -1.9489508e-02, 3.8859814e-01),
+	vec3(-6.224267e-02, 6.72825e-02, 1.4795321e-01),
+	vec3(2.327344e-03, -4.770775e-01, 7.5536734e-01),
+	vec3(2.2285016e-01, 2.4565978e-01, 5.1526016e-01),
+	vec3(-1.8138748e-01, -1.681095e-02, 2.7774465e-01),
+	vec3(2.2799177e-02, -1.7303763e-02, 4.2842425e-02),
+	vec3(-7.761224e-02, 4.2662555e-01, 6.3737285e-01),
+	vec3(-1.4868069e-01, -2.3626849e-01, 4.030258e-01),
+	vec3(1.16499655e-01, 3.1927727e-02, 1.7133231e-01),
+	vec3(-4.8183018e-01, 2.472673e-01, 7.548156e-01),
+	vec3(1.3289273e-01, -3.584553e-01, 5.236772e-01),
+	vec3(8.266782e-02, 2.0307143e-01, 2.9523462e-01),
+	vec3(-4.7447268e-02, -2.2486147e-02, 6.951211e-02),
+	vec3(4.6948248e-01, -1.4474647e-01, 6.395707e-01),
+	vec3(-1.6366549e-01, 2.7926615e-01, 4.1442272e-01),
+	vec3(-3.2017022e-02, -1.490977e-01, 1.9204031e-01),
+	vec3(4.9394023e-01, 3.50872e-01, 7.5056845e-01),
+	vec3(-4.3051162e-01, 5.3653836e-02, 5.287603e-01),
+	vec3(1.6742788e-01, -1.9670115e-01, 3.097655e-01),
+	vec3(2.8909892e-03, 7.9275884e-02, 9.3611866e-02),
+	vec3(-3.8568e-01, -3.913661e-01, 6.381001e-01),
+	vec3(3.6921623e-01, 1.8878276e-02, 4.2254236e-01),
+	vec3(-1.4382544e-01, 1.1883575e-01, 2.0987774e-01),
+	vec3(1.7018769e-05, -1.21982164e-04, 1.3637765e-04),
+	vec3(2.7587456e-01, 4.0065524e-01, 5.3021336e-01),
+	vec3(-2.9163507e-01, -6.710455e-02, 3.2109192e-01),
+	vec3(9.468618e-02, -5.3645402e-02, 1.14950426e-01),
+	vec3(-1.8772706e-01, 5.786714e-01, 6.32607e-01),
+	vec3(-1.731293e-01, -3.7957048e-01, 4.2708522e-01),
+	vec3(2.0515613e-01, 8.7037705e-02, 2.2460349e-01),
+	vec3(-2.3937436e-02, 8.478149e-03, 2.5196858e-02),
+	vec3(2.5364196e-01, -4.7693747e-01, 5.2767277e-01),
+	vec3(8.556377e-02, 3.3114684e-01, 3.2891324e-01),
+	vec3(-1.18053906e-01, -7.672426e-02, 1.3329509e-01),
+	vec3(6.589764e-01, -1.0994433e-01, 6.226514e-01),
+	vec3(-2.8722435e-01, 3.6715835e-01, 4.2767954e-01),
+	vec3(-2.0298287e-02, -2.6044106e-01, 2.3591952e-01),
+	vec3(3.8975403e-02, 3.641038e-02, 4.741294e-02),
+	vec3(-5.9507763e-01, -5.8061145e-03, 5.206811e-01),
+	vec3(2.8755826e-01, -2.5831243e-01, 3.3285248e-01),
+	vec3(-1.7006196e-02, 1.7423981e-01, 1.4835595e-01),
+	vec3(-4.3772075e-01, -5.826144e-01, 6.076722e-01),
+	vec3(5.077854e-01, 9.493834e-02, 4.238518e-01),
+	vec3(-2.5603208e-01, 1.5937938e-01, 2.43448e-01),
+	vec3(2.253204e-02, -8.0670275e-02, 6.651101e-02),
+	vec3(2.9449984e-01, 5.808265e-01, 5.0864655e-01),
+	vec3(-4.0502813e-01, -1.524105e-01, 3.3242282e-01),
+	vec3(1.9628336e-01, -7.879047e-02, 1.597614e-01),
+	vec3(-3.419462e-01, 7.125268e-01, 5.869312e-01),
+	vec3(-1.6482706e-01, -5.440256e-01, 4.1497946e-01),
+	vec3(2.9578826e-01, 1.7529248e-01, 2.4669386e-01),
+	vec3(-1.14021435e-01, 2.3903523e-02, 8.2136765e-02),
+	vec3(4.1314033e-01, -5.7562995e-01, 4.907755e-01),
+	vec3(5.7109687e-02, 4.771986e-01, 3.269721e-01),
+	vec3(-1.8957834e-01, -1.6296661e-01, 1.670168e-01),
+	vec3(1.6735386e-02, -5.2856194e-04, 1.0981738e-02),
+	vec3(-4.4495133e-01, 4.3422857e-01, 4.002086e-01),
+	vec3(2.1696039e-02, -3.872703e-01, 2.4497996e-01),
+	vec3(9.588366e-02, 1.1720657e-01, 9.381133e-02),
+	vec3(-7.591891e-01, -1.0969917e-01, 4.659516e-01),
+	vec3(4.380191e-01, -2.9846242e-01, 3.1558305e-01),
+	vec3(-6.6506855e-02, 2.827191e-01, 1.6943024e-01),
+	vec3(-2.3598054e-02, -4.2129334e-02, 2.7588781e-02),
+	vec3(6.423448e-01, 2.1185222e-01, 3.7830105e-01),
+	vec3(-3.9543003e-01, 1.7803794e-01, 2.373252e-01),
+	vec3(7.443951e-02, -1.7310734e-01, 1.008487e-01),
+	vec3(2.7223024e-01, 7.807035e-01, 4.325005e-01),
+	vec3(-5.1164323e-01, -2.7530918e-01, 2.968755e-01),
+	vec3(3.225623e-01, -8.166913e-02, 1.65964e-01),
+	vec3(-4.5026146e-02, 6.854654e-02, 3.990164e-02),
+	vec3(-1.1700212e-01, -7.2298944e-01, 3.4731337e-01),
+	vec3(3.7749028e-01, 2.9828677e-01, 2.2218567e-01),
+	vec3(-2.2680937e-01, 1.6564347e-02, 1.0217873e-01),
+	vec3(6.091687e-01, -6.457393e-01, 3.8766265e-01),
+	vec3(-9.270565e-03, 6.3341117e-01, 2.6855588e-01),
+	vec3(-2.5045308e-01, -2.8155994e-01, 1.5489137e-01),
+	vec3(1.1719341e-01, 1.2015768e-02, 4.6882622e-02),
+	vec3(-6.3370705e-01, 4.7128808e-01, 3.0380255e-01),
+	vec3(9.9979624e-02, -5.206758e-01, 1.9679742e-01),
+	vec3(1.4066623e-01, 2.2844717e-01, 9.589086e-02),
+	vec3(-3.8877612e-03, -1.106365e-03, 1.3879482e-03),
+	vec3(6.146051e-01, -3.0786705e-01, 2.2613868e-01),
+	vec3(-1.5077768e-01, 3.9483467e-01, 1.327887e-01),
+	vec3(-5.7251982e-02, -1.4466392e-01, 4.6508487e-02),
+	vec3(7.630817e-01, 3.7079856e-01, 2.4021722e-01),
+	vec3(-5.566838e-01, 1.657016e-01, 1.5490603e-01),
+	vec3(1.5983965e-01, -2.667377e-01, 7.7579185e-02),
+	vec3(7.78335e-03, 3.8050517e-02, 8.983178e-03),
+	vec3(-6.012936e-01, -4.360196e-01, 1.5738083e-01),
+	vec3(4.6705157e-01, -5.35856e-02, 8.97382e-02),
+	vec3(-1.2799856e-01, 1.4743903e-01, 3.2736827e-02),
+	vec3(-2.4245014e-02, -9.0801746e-01, 1.2820269e-01),
+	vec3(4.3987197e-01, 4.5515516e-01, 6.892628e-02),
+	vec3(-3.5473e-01, -2.160943e-02, 2.2255234e-02));
+vec3 nookRay(int i)
 {
-	return nook_directions[i];
+	return nook_rays[i];
 }
 
-// Smallest and largest cosine to the normal of all directions within an angle below 90 degrees around one direction; `middle`
-// and `within` are the cosines of that direction and of the angle.
-vec2 nookRingAround(float middle, float within)
+// Side of the table in texels. A texel is 2 degrees wide.
+int nookHalfSpaces()
 {
-	if (within <= 0.0f)
-	{
-		return vec2(-1.0f, 1.0f);
-	}
-	float across = sqrt(max(0.0f, (1.0f - middle * middle) * (1.0f - within * within)));
-	return vec2(-middle >= within ? -1.0f : middle * within - across, middle >= within ? 1.0f : middle * within + across);
+	return 64;
 }
 
-// Smallest and largest cosine to the normal of all directions that a polygon covers within reach, rounded to the safe side.
-// Requires that no corner coincides with the receiver.
-vec2 nookMaskRing(int count, vec3 n, vec3 front, float height, float reach)
-{
-	vec3 sum = vec3(0.0f, 0.0f, 0.0f);
-	float lowest = 1.0f;
-	for (int i = 0; i < count; ++i)
-	{
-		vec3 corner = nookCorner(i);
-		vec3 unit = corner / sqrt(dot(corner, corner));
-		sum = sum + unit;
-		lowest = min(lowest, dot(unit, n));
-	}
-	vec3 middle = sum / sqrt(max(dot(sum, sum), 1e-12f));
-	float within = 1.0f;
-	for (int i = 0; i < count; ++i)
-	{
-		vec3 corner = nookCorner(i);
-		within = min(within, dot(middle, corner) / sqrt(dot(corner, corner)));
-	}
-	vec2 around = nookRingAround(dot(middle, n), within);
-	vec2 plane = nookRingAround(dot(front, n) * (height < 0.0f ? 1.0f : -1.0f), abs(height) / reach);
-	float slack = 1e-3f; // covers all rounding
-	// Above the horizon, no point of an edge is lower than its ends.
-	return vec2(max(lowest > 0.0f ? lowest : around.x, plane.x) - slack, min(around.y, plane.y) + slack);
-}
+uniform usampler2D nook_half_spaces; // the picture of the stage NOOK_HALF_SPACES
 
-// Can a polygon with that ring cover any of 32 directions? Directions are sorted, the steepest first.
-bool nookMaskAsks(int word, vec2 ring)
+uvec4 nookHalfSpace(ivec2 texel, int four)
 {
-	return nookDirection(32 * word).z >= ring.x && nookDirection(32 * word + 31).z <= ring.y;
+	return texelFetch(nook_half_spaces, ivec2(texel.x, texel.y + four * nookHalfSpaces()), 0);
 }
 
 // The upper 12 bits of each component: the product of two of them is exact.
@@ -702,6 +672,41 @@ vec3 nookCross(vec3 a, vec3 b)
 	vec2 by = vec2(hb.y, lb.y);
 	vec2 bz = vec2(hb.z, lb.z);
 	return vec3(nookProducts(ay, bz, az, by), nookProducts(az, bx, ax, bz), nookProducts(ax, by, ay, bx));
+}
+
+// Bits of the rays from 32 * word to 32 * word + 31 that reach farther than `least` along the direction `toward`, in shares of the
+// reach.
+uint nookMaskWord(int word, vec3 toward, float least)
+{
+	uint bits = 0u;
+	for (int i = 0; i < 32; ++i)
+	{
+		bits = bits | (uint(dot(nookRay(32 * word + i), toward) > least) << uint(i));
+	}
+	return bits;
+}
+
+// nookMaskWord for the rays among `asked`, of 128 * four to 128 * four + 127.
+uvec4 nookMaskWords(int four, vec3 toward, float least, uvec4 asked)
+{
+	uvec4 bits = uvec4(0u, 0u, 0u, 0u);
+	if (asked.x != 0u)
+	{
+		bits.x = nookMaskWord(4 * four, toward, least);
+	}
+	if (asked.y != 0u)
+	{
+		bits.y = nookMaskWord(4 * four + 1, toward, least);
+	}
+	if (asked.z != 0u)
+	{
+		bits.z = nookMaskWord(4 * four + 2, toward, least);
+	}
+	if (asked.w != 0u)
+	{
+		bits.w = nookMaskWord(4 * four + 3, toward, least);
+	}
+	return bits & asked;
 }
 
 // A number in [0, 1) for each polygon, evenly distributed over any run of consecutive polygons.
@@ -736,53 +741,64 @@ vec3 nookInward(vec3 from, vec3 to, vec3 n, vec3 x, vec3 y)
 	return vec3(dot(c, x), dot(c, y), dot(c, n));
 }
 
-// Bits of the directions from 32 * word to 32 * word + 31 that one polygon covers. height: nookHeight(front). polygon: a number
-// of its own, the index of its first corner.
-uint nookMaskWord(int count, int word, vec3 n, vec3 front, float height, float alpha, int polygon, float reach)
+// Bits of the rays on the inner side of a plane through the receiver, whose normal points inward; all where it is 0. For the
+// opposite normal they are exactly the others.
+uvec4 nookInsideEdge(int four, vec3 inward)
+{
+	float size = abs(inward.x) + abs(inward.y) + abs(inward.z);
+	bool upper = inward.z > 0.0f || (inward.z == 0.0f && (inward.y > 0.0f || (inward.y == 0.0f && inward.x >= 0.0f)));
+	vec3 n = upper ? inward : -inward;
+	int side = nookHalfSpaces();
+	float half_side = 0.5f * float(side);
+	float scale = half_side / max(size, 1e-37f);
+	ivec2 texel = ivec2(int(half_side + scale * (n.x + n.y)), int(half_side + scale * (n.x - n.y)));
+	uvec4 bits = nookHalfSpace(ivec2(clamp(texel.x, 0, side - 1), clamp(texel.y, 0, side - 1)), four);
+	uint other = upper ? 0u : 4294967295u;
+	uint all = size > 0.0f ? 0u : 4294967295u;
+	return (bits ^ uvec4(other, other, other, other)) | uvec4(all, all, all, all);
+}
+
+// Bits of the share `alpha` of the rays from 32 * word to 32 * word + 31. shift: nookShift of the polygon.
+uint nookMaskShare(int word, float alpha, float shift)
+{
+	uint bits = 0u;
+	for (int i = 0; i < 32; ++i)
+	{
+		float share = float(32 * word + i) * 0.754877666f + shift;
+		if (share - floor(share) < alpha)
+		{
+			bits = bits | (1u << uint(i));
+		}
+	}
+	return bits;
+}
+
+// Bits of the rays among `asked`, of 128 * four to 128 * four + 127, that one polygon covers. height: nookHeight(front). polygon: a
+// number of its own, the index of its first corner.
+uvec4 nookMaskBits(int count, int four, vec3 n, vec3 front, float height, float alpha, int polygon, float reach, uvec4 asked)
 {
 	vec3 x = nookTangent(n, 0);
 	vec3 y = nookTangent(n, 1);
 	float side = height < 0.0f ? -1.0f : 1.0f;
-	float up = abs(height);
-	vec3 down = vec3(dot(front, x), dot(front, y), dot(front, n)) * -side;
-	float shift = nookShift(polygon);
-	uint bits = 0u;
-	for (int i = 0; i < 32; ++i)
-	{
-		vec4 d = nookDirection(32 * word + i);
-		float along = dot(vec3(d.x, d.y, d.z), down) * reach; // the ray meets the plane at up / along of the reach
-		if (along > up && 1.0f - up / along > d.w)
-		{
-			float share = float(32 * word + i) * 0.754877666f + shift;
-			if (share - floor(share) < alpha)
-			{
-				bits = bits | (1u << uint(i));
-			}
-		}
-	}
+	uvec4 bits = asked;
 	vec3 a = nookCorner(count - 1);
-	// Three edges for each pass over the directions; an edge without length removes none.
-	for (int k = 0; k < count; k += 3)
+	for (int i = 0; i < count; ++i)
 	{
-		vec3 b = nookCorner(k);
-		vec3 c = nookCorner(min(k + 1, count - 1));
-		vec3 e = nookCorner(min(k + 2, count - 1));
-		if (bits != 0u)
+		vec3 b = nookCorner(i);
+		bits = bits & nookInsideEdge(four, nookInward(a, b, n, x, y) * side);
+		if ((bits.x | bits.y | bits.z | bits.w) == 0u)
 		{
-			vec3 first = nookInward(a, b, n, x, y) * side;
-			vec3 second = nookInward(b, c, n, x, y) * side;
-			vec3 third = nookInward(c, e, n, x, y) * side;
-			for (int i = 0; i < 32; ++i)
-			{
-				vec4 d = nookDirection(32 * word + i);
-				vec3 ray = vec3(d.x, d.y, d.z);
-				if (dot(ray, first) < 0.0f || dot(ray, second) < 0.0f || dot(ray, third) < 0.0f)
-				{
-					bits = bits & ~(1u << uint(i));
-				}
-			}
+			return bits;
 		}
-		a = e;
+		a = b;
+	}
+	vec3 down = vec3(dot(front, x), dot(front, y), dot(front, n)) * -side;
+	bits = nookMaskWords(four, down, abs(height) / reach, bits);
+	if (alpha < 1.0f)
+	{
+		float shift = nookShift(polygon);
+		bits = bits & uvec4(nookMaskShare(4 * four, alpha, shift), nookMaskShare(4 * four + 1, alpha, shift),
+							nookMaskShare(4 * four + 2, alpha, shift), nookMaskShare(4 * four + 3, alpha, shift));
 	}
 	return bits;
 }
@@ -832,16 +848,11 @@ float nookMaskHeight(vec3 normal)
 	return within ? height : 0.0;
 }
 
-// nookMaskRing for this polygon.
-vec2 nookCoveredRing(vec3 normal, float height)
+// nookMaskBits for this polygon. height: not 0.
+uvec4 nookCovered(int four, vec3 normal, float height)
 {
-	return nookMaskRing(nook_polygon.y, normal, nook_front.xyz, height, nook.radius);
-}
-
-// nookMaskWord for this polygon: 32 of the directions. height: not 0.
-uint nookCovered(int word, vec3 normal, float height)
-{
-	return nookMaskWord(nook_polygon.y, word, normal, nook_front.xyz, height, nook_front.w, nook_polygon.x, nook.radius);
+	return nookMaskBits(nook_polygon.y, four, normal, nook_front.xyz, height, nook_front.w, nook_polygon.x, nook.radius,
+		uvec4(0xffffffffu));
 }
 
 layout(location = 0) out uvec4 nook_bits_0;
@@ -849,18 +860,8 @@ layout(location = 0) out uvec4 nook_bits_0;
 void main()
 {
 	vec3 normal = nookReceive(ivec2(gl_FragCoord.xy) * nook.cell);
-	nook_bits_0 = uvec4(0u);
 	float height = nookMaskHeight(normal);
-	int words = height != 0.0 ? 4 : 0;
-	vec2 ring = nookCoveredRing(normal, height);
-	for (int word = 0; word < words; ++word)
-	{
-		if (nookMaskAsks(word, ring))
-		{
-			uint bits = nookCovered(word, normal, height);
-			nook_bits_0 += uvec4(equal(ivec4(word - 0), ivec4(0, 1, 2, 3))) * bits;
-		}
-	}
+	nook_bits_0 = height != 0.0 ? nookCovered(0, normal, height) : uvec4(0u);
 }
 #endif // NOOK_FRAGMENT
 
@@ -886,6 +887,210 @@ void main()
 	nook_visibility = 1.0 - float(covered) / 128.0;
 }
 #endif // NOOK_RESOLVE
+
+#ifdef NOOK_HALF_SPACES
+
+const vec3 nook_rays[128] = vec3[128](
+	vec3(6.225586e-02, 0e+00, 9.9414635e-01),
+	vec3(-5.7110123e-02, 5.231755e-02, 7.1125925e-01),
+	vec3(5.31285e-03, -6.053718e-02, 4.305664e-01),
+	vec3(1.5514614e-02, 2.0236066e-02, 1.5208091e-01),
+	vec3(-1.6129123e-01, -2.8530149e-02, 8.5808057e-01),
+	vec3(1.037066e-01, -6.596965e-02, 5.800649e-01),
+	vec3(-1.8270679e-02, 6.7966014e-02, 3.0428058e-01),
+	vec3(-3.5348863e-03, -6.8062088e-03, 3.0741498e-02),
+	vec3(1.8179823e-01, 6.639242e-02, 7.256881e-01),
+	vec3(-1.1846238e-01, 4.8899543e-02, 4.526301e-01),
+	vec3(2.3039853e-02, -4.9234822e-02, 1.8184271e-01),
+	vec3(8.1558526e-02, 2.6002142e-01, 8.673614e-01),
+	vec3(-1.69942e-01, -9.848487e-02, 5.970553e-01),
+	vec3(1.1034977e-01, -2.4260087e-02, 3.2904616e-01),
+	vec3(-1.3022373e-02, 1.8522987e-02, 6.3348815e-02),
+	vec3(-3.5178572e-02, -2.7147064e-01, 7.374785e-01),
+	vec3(1.3891892e-01, 1.17081024e-01, 4.722748e-01),
+	vec3(-8.32656e-02, 3.4432942e-03, 2.0941065e-01),
+	vec3(2.5458995e-01, -2.5335097e-01, 8.7381744e-01),
+	vec3(-1.197355e-02, 2.5893906e-01, 6.1144716e-01),
+	vec3(-9.833116e-02, -1.17833585e-01, 3.514451e-01),
+	vec3(4.178117e-02, 5.621597e-03, 9.382792e-02),
+	vec3(-2.8297612e-01, 1.9688742e-01, 7.464772e-01),
+	vec3(5.0934058e-02, -2.2640698e-01, 4.8936716e-01),
+	vec3(5.676613e-02, 9.906447e-02, 2.3467241e-01),
+	vec3(-4.1686592e-01, -1.3299158e-01, 8.7727416e-01),
+	vec3(2.890176e-01, -1.3353345e-01, 6.230866e-01),
+	vec3(-7.499257e-02, 1.7919092e-01, 3.7134615e-01),
+	vec3(-2.2111569e-02, -6.1475787e-02, 1.2207063e-01),
+	vec3(3.645359e-01, 1.9158985e-01, 7.525081e-01),
+	vec3(-2.7244544e-01, 7.1815744e-02, 5.037545e-01),
+	vec3(7.956743e-02, -1.23745635e-01, 2.574997e-01),
+	vec3(1.3599002e-03, 7.9128705e-03, 1.3763052e-02),
+	vec3(-2.9740876e-01, -2.3033005e-01, 6.3179725e-01),
+	vec3(2.3524429e-01, -1.9489508e-02, 3.8859814e-01),
+	vec3(-6.224267e-02, 6.72825e-02, 1.4795321e-01),
+	vec3(2.327344e-03, -4.770775e-01, 7.5536734e-01),
+	vec3(2.2285016e-01, 2.4565978e-01, 5.1526016e-01),
+	vec3(-1.8138748e-01, -1.681095e-02, 2.7774465e-01),
+	vec3(2.2799177e-02, -1.7303763e-02, 4.2842425e-02),
+	vec3(-7.761224e-02, 4.2662555e-01, 6.3737285e-01),
+	vec3(-1.4868069e-01, -2.3626849e-01, 4.030258e-01),
+	vec3(1.16499655e-01, 3.1927727e-02, 1.7133231e-01),
+	vec3(-4.8183018e-01, 2.472673e-01, 7.548156e-01),
+	vec3(1.3289273e-01, -3.584553e-01, 5.236772e-01),
+	vec3(8.266782e-02, 2.0307143e-01, 2.9523462e-01),
+	vec3(-4.7447268e-02, -2.2486147e-02, 6.951211e-02),
+	vec3(4.6948248e-01, -1.4474647e-01, 6.395707e-01),
+	vec3(-1.6366549e-01, 2.7926615e-01, 4.1442272e-01),
+	vec3(-3.2017022e-02, -1.490977e-01, 1.9204031e-01),
+	vec3(4.9394023e-01, 3.50872e-01, 7.5056845e-01),
+	vec3(-4.3051162e-01, 5.3653836e-02, 5.287603e-01),
+	vec3(1.6742788e-01, -1.9670115e-01, 3.097655e-01),
+	vec3(2.8909892e-03, 7.9275884e-02, 9.3611866e-02),
+	vec3(-3.8568e-01, -3.913661e-01, 6.381001e-01),
+	vec3(3.6921623e-01, 1.8878276e-02, 4.2254236e-01),
+	vec3(-1.4382544e-01, 1.1883575e-01, 2.0987774e-01),
+	vec3(1.7018769e-05, -1.21982164e-04, 1.3637765e-04),
+	vec3(2.7587456e-01, 4.0065524e-01, 5.3021336e-01),
+	vec3(-2.9163507e-01, -6.710455e-02, 3.2109192e-01),
+	vec3(9.468618e-02, -5.3645402e-02, 1.14950426e-01),
+	vec3(-1.8772706e-01, 5.786714e-01, 6.32607e-01),
+	vec3(-1.731293e-01, -3.7957048e-01, 4.2708522e-01),
+	vec3(2.0515613e-01, 8.7037705e-02, 2.2460349e-01),
+	vec3(-2.3937436e-02, 8.478149e-03, 2.5196858e-02),
+	vec3(2.5364196e-01, -4.7693747e-01, 5.2767277e-01),
+	vec3(8.556377e-02, 3.3114684e-01, 3.2891324e-01),
+	vec3(-1.18053906e-01, -7.672426e-02, 1.3329509e-01),
+	vec3(6.589764e-01, -1.0994433e-01, 6.226514e-01),
+	vec3(-2.8722435e-01, 3.6715835e-01, 4.2767954e-01),
+	vec3(-2.0298287e-02, -2.6044106e-01, 2.3591952e-01),
+	vec3(3.8975403e-02, 3.641038e-02, 4.741294e-02),
+	vec3(-5.9507763e-01, -5.8061145e-03, 5.206811e-01),
+	vec3(2.8755826e-01, -2.5831243e-01, 3.3285248e-01),
+	vec3(-1.7006196e-02, 1.7423981e-01, 1.4835595e-01),
+	vec3(-4.3772075e-01, -5.826144e-01, 6.076722e-01),
+	vec3(5.077854e-01, 9.493834e-02, 4.238518e-01),
+	vec3(-2.5603208e-01, 1.5937938e-01, 2.43448e-01),
+	vec3(2.253204e-02, -8.0670275e-02, 6.651101e-02),
+	vec3(2.9449984e-01, 5.808265e-01, 5.0864655e-01),
+	vec3(-4.0502813e-01, -1.524105e-01, 3.3242282e-01),
+	vec3(1.9628336e-01, -7.879047e-02, 1.597614e-01),
+	vec3(-3.419462e-01, 7.125268e-01, 5.869312e-01),
+	vec3(-1.6482706e-01, -5.440256e-01, 4.1497946e-01),
+	vec3(2.9578826e-01, 1.7529248e-01, 2.4669386e-01),
+	vec3(-1.14021435e-01, 2.3903523e-02, 8.2136765e-02),
+	vec3(4.1314033e-01, -5.7562995e-01, 4.907755e-01),
+	vec3(5.7109687e-02, 4.771986e-01, 3.269721e-01),
+	vec3(-1.8957834e-01, -1.6296661e-01, 1.670168e-01),
+	vec3(1.6735386e-02, -5.2856194e-04, 1.0981738e-02),
+	vec3(-4.4495133e-01, 4.3422857e-01, 4.002086e-01),
+	vec3(2.1696039e-02, -3.872703e-01, 2.4497996e-01),
+	vec3(9.588366e-02, 1.1720657e-01, 9.381133e-02),
+	vec3(-7.591891e-01, -1.0969917e-01, 4.659516e-01),
+	vec3(4.380191e-01, -2.9846242e-01, 3.1558305e-01),
+	vec3(-6.6506855e-02, 2.827191e-01, 1.6943024e-01),
+	vec3(-2.3598054e-02, -4.2129334e-02, 2.7588781e-02),
+	vec3(6.423448e-01, 2.1185222e-01, 3.7830105e-01),
+	vec3(-3.9543003e-01, 1.7803794e-01, 2.373252e-01),
+	vec3(7.443951e-02, -1.7310734e-01, 1.008487e-01),
+	vec3(2.7223024e-01, 7.807035e-01, 4.325005e-01),
+	vec3(-5.1164323e-01, -2.7530918e-01, 2.968755e-01),
+	vec3(3.225623e-01, -8.166913e-02, 1.65964e-01),
+	vec3(-4.5026146e-02, 6.854654e-02, 3.990164e-02),
+	vec3(-1.1700212e-01, -7.2298944e-01, 3.4731337e-01),
+	vec3(3.7749028e-01, 2.9828677e-01, 2.2218567e-01),
+	vec3(-2.2680937e-01, 1.6564347e-02, 1.0217873e-01),
+	vec3(6.091687e-01, -6.457393e-01, 3.8766265e-01),
+	vec3(-9.270565e-03, 6.3341117e-01, 2.6855588e-01),
+	vec3(-2.5045308e-01, -2.8155994e-01, 1.5489137e-01),
+	vec3(1.1719341e-01, 1.2015768e-02, 4.6882622e-02),
+	vec3(-6.3370705e-01, 4.7128808e-01, 3.0380255e-01),
+	vec3(9.9979624e-02, -5.206758e-01, 1.9679742e-01),
+	vec3(1.4066623e-01, 2.2844717e-01, 9.589086e-02),
+	vec3(-3.8877612e-03, -1.106365e-03, 1.3879482e-03),
+	vec3(6.146051e-01, -3.0786705e-01, 2.2613868e-01),
+	vec3(-1.5077768e-01, 3.9483467e-01, 1.327887e-01),
+	vec3(-5.7251982e-02, -1.4466392e-01, 4.6508487e-02),
+	vec3(7.630817e-01, 3.7079856e-01, 2.4021722e-01),
+	vec3(-5.566838e-01, 1.657016e-01, 1.5490603e-01),
+	vec3(1.5983965e-01, -2.667377e-01, 7.7579185e-02),
+	vec3(7.78335e-03, 3.8050517e-02, 8.983178e-03),
+	vec3(-6.012936e-01, -4.360196e-01, 1.5738083e-01),
+	vec3(4.6705157e-01, -5.35856e-02, 8.97382e-02),
+	vec3(-1.2799856e-01, 1.4743903e-01, 3.2736827e-02),
+	vec3(-2.4245014e-02, -9.0801746e-01, 1.2820269e-01),
+	vec3(4.3987197e-01, 4.5515516e-01, 6.892628e-02),
+	vec3(-3.5473e-01, -2.160943e-02, 2.2255234e-02));
+vec3 nookRay(int i)
+{
+	return nook_rays[i];
+}
+
+// Side of the table in texels. A texel is 2 degrees wide.
+int nookHalfSpaces()
+{
+	return 64;
+}
+
+// Normal of a texel of the table: a hemisphere as a square, the folded octahedron turned by 45 degrees. Not of unit length.
+vec3 nookHalfSpaceNormal(ivec2 texel)
+{
+	float side = float(nookHalfSpaces());
+	float u = (2.0f * float(texel.x) + 1.0f) / side - 1.0f;
+	float v = (2.0f * float(texel.y) + 1.0f) / side - 1.0f;
+	float x = 0.5f * (u + v);
+	float y = 0.5f * (u - v);
+	return vec3(x, y, 1.0f - abs(x) - abs(y));
+}
+
+// Bits of the rays from 32 * word to 32 * word + 31 that reach farther than `least` along the direction `toward`, in shares of the
+// reach.
+uint nookMaskWord(int word, vec3 toward, float least)
+{
+	uint bits = 0u;
+	for (int i = 0; i < 32; ++i)
+	{
+		bits = bits | (uint(dot(nookRay(32 * word + i), toward) > least) << uint(i));
+	}
+	return bits;
+}
+
+// nookMaskWord for the rays among `asked`, of 128 * four to 128 * four + 127.
+uvec4 nookMaskWords(int four, vec3 toward, float least, uvec4 asked)
+{
+	uvec4 bits = uvec4(0u, 0u, 0u, 0u);
+	if (asked.x != 0u)
+	{
+		bits.x = nookMaskWord(4 * four, toward, least);
+	}
+	if (asked.y != 0u)
+	{
+		bits.y = nookMaskWord(4 * four + 1, toward, least);
+	}
+	if (asked.z != 0u)
+	{
+		bits.z = nookMaskWord(4 * four + 2, toward, least);
+	}
+	if (asked.w != 0u)
+	{
+		bits.w = nookMaskWord(4 * four + 3, toward, least);
+	}
+	return bits & asked;
+}
+
+// A texel of the table of half spaces.
+uvec4 nookHalfSpaceTexel(ivec2 texel, int four)
+{
+	return nookMaskWords(four, nookHalfSpaceNormal(texel), 0.0f, uvec4(4294967295u, 4294967295u, 4294967295u, 4294967295u));
+}
+
+layout(location = 0) out uvec4 nook_bits;
+
+void main()
+{
+	ivec2 texel = ivec2(gl_FragCoord.xy);
+	int four = texel.y / nookHalfSpaces();
+	nook_bits = nookHalfSpaceTexel(ivec2(texel.x, texel.y - four * nookHalfSpaces()), four);
+}
+#endif // NOOK_HALF_SPACES
 
 #ifdef NOOK_SPARSE
 

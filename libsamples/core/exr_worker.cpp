@@ -177,7 +177,8 @@ bool isBefore(const std::string& a, const std::string& b)
 														  "alpha", "ar",  "ra", "ag",    "ga", "ab",   "ba",   "z"};
 		const std::size_t dot = name.rfind('.');
 		const std::string layer = dot == std::string::npos ? "" : name.substr(0, dot);
-		return std::tuple(layer, std::find(kFirst.begin(), kFirst.end(), suffixOf(name)) - kFirst.begin(), name);
+		const auto end = layer.empty() ? kFirst.end() : kFirst.end() - 1; // N.Z comes after N.X and N.Y
+		return std::tuple(layer, std::find(kFirst.begin(), end, suffixOf(name)) - kFirst.begin(), name);
 	};
 	return place(a) < place(b);
 }

@@ -220,7 +220,7 @@ for generator in Ninja "Unix Makefiles"; do
 	step "emits, $generator: JavaScript" grep -Fq "radius: 0.75 * reach" "$made/fitted.js"
 	step "emits, $generator: device depth" grep -Fq "settings.device_depth = true;" "$made/fitted.h"
 	step "emits, $generator: a tile of slices" grep -Fq "inline constexpr int nook_slices_tile_height = 2;" "$made/tiled.h"
-	step "emits, $generator: masks" grep -Fq "nook_directions[64]" "$made/masks.glsl"
+	step "emits, $generator: masks" grep -Fq "float(covered) / 64.0" "$made/masks.glsl"
 	step "emits, $generator: again" cmake --build "$out"
 	expect_made 0 "emits, $generator: nothing changed"
 	sleep 1

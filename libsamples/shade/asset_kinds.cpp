@@ -5,7 +5,7 @@
 #include "core/decimal.h"
 #include "core/error.h"
 #include "methods/method_table.h"
-#include "scene/level_glb.h"
+#include "scene/gltf_edit.h"
 #include "volume/build.h"
 #include "volume/runtime_assets.h"
 #include "volume/volume_glb.h"
@@ -49,10 +49,10 @@ public:
 		return *m_bytes;
 	}
 
-	std::string file(std::string_view writer, std::string& what) const override
+	std::string file(std::string_view version, const std::string& /*command*/, std::string& what) const override
 	{
 		what = "volumes of " + m_level + ": " + std::to_string(m_set.occluders.polygons.size());
-		return volumeGlb(m_set, {}, m_level, std::string(writer), m_run).bytes;
+		return volumeGlb(m_set, {}, m_level, "nook " + std::string(version), m_run).bytes;
 	}
 
 private:
@@ -201,8 +201,8 @@ void emitVolumes(AssetEmission& made)
 class BakeAsset : public LevelAsset
 {
 public:
-	BakeAsset(Level level, BakedValues values, uint64_t bytes, const RunSettings& run)
-		: m_level(std::move(level)), m_values(std::move(values)), m_bytes(bytes), m_tracer(m_level, run)
+	BakeAsset(Level level, BakedValues values, uint64_t bytes, const BakeSettings& settings, const RunSettings& run)
+		: m_level(std::move(level)), m_values(std::move(values)), m_bytes(bytes), m_settings(settings), m_tracer(m_level, run)
 	{
 	}
 
@@ -228,19 +228,26 @@ public:
 		return m_bytes;
 	}
 
-	std::string file(std::string_view writer, std::string& what) const override
+	std::string file(std::string_view version, const std::string& command, std::string& what) const override
 	{
 		what = m_level.name + " with visibility at its vertices: " + std::to_string(m_level.positions.size());
-		GlbBake bake;
+		GltfBake bake;
 		bake.visibility = m_values.front;
 		bake.back = m_values.back;
-		return levelGlb(m_level, writer, bake);
+		bake.record = {{"to", "visibility"},  {"radius_m", m_settings.radius_m},
+					   {"falloff", "linear"}, {"rays", m_settings.rays},
+					   {"version", version},  {"command", command}};
+		std::vector<GltfPlace> places;
+		std::string bytes = levelGlb(m_level, "nook " + std::string(version), places);
+		const std::array<std::string, 1> output{"level.glb"};
+		return bakeInto(openGlb(std::move(bytes), m_level.name), places, bake, output).files.front();
 	}
 
 private:
 	Level m_level;
 	BakedValues m_values;
 	uint64_t m_bytes;
+	BakeSettings m_settings;
 	Tracer m_tracer; // of m_level
 };
 
@@ -268,7 +275,7 @@ std::unique_ptr<LevelAsset> makeBake(const AssetSource& source, const AssetSetti
 	baked.back = made.back.empty() ? made.visibility : std::move(made.back);
 	baked.front = std::move(made.visibility);
 	return std::make_unique<BakeAsset>(std::move(level), std::move(baked), 4 * values + 32 * more_vertices + 12 * more_triangles,
-									   run);
+									   settings, run);
 }
 
 double bakeSeconds(const AssetSettings& settings, double triangles)
@@ -310,6 +317,8 @@ void emitBake(AssetEmission& made)
 	made.use.emplace_back(
 		"multiply ambient light by the vertices' _VISIBILITY; where a material has two sides and gl_FrontFacing is "
 		"false, by _VISIBILITY_BACK");
+	made.use.emplace_back(
+		"for a glTF level the command without --max-error adds the values to the level's own file, materials and all");
 	made.use.emplace_back("a bake is of static geometry: for what moves take a screen-space method as well, which darkens by "
 						  "screen / screen without what moves");
 }

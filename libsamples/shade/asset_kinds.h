@@ -62,8 +62,8 @@ public:
 	// Size of its file, or of what it adds to the level's.
 	virtual uint64_t bytes() = 0;
 
-	// Its file, and a short description of it. `writer`: "nook 0.1.0".
-	virtual std::string file(std::string_view writer, std::string& what) const = 0;
+	// Its file, and a short description of it. `version`: of nook; `command`: that makes the file, for its record.
+	virtual std::string file(std::string_view version, const std::string& command, std::string& what) const = 0;
 };
 
 struct EmittedFile

@@ -3,6 +3,7 @@
 
 #include "core/decimal.h"
 #include "core/error.h"
+#include "core/system.h"
 #include "core/text.h"
 #include "emit/module.h"
 #include "emit/module_parts.h"
@@ -197,11 +198,12 @@ private:
 		LevelAsset& asset = level.bench->asset(m_candidate);
 		const std::string name = nameOf(level, std::string(kind.ending));
 		std::string what;
-		std::string bytes = asset.file("nook " + m_settings.version, what);
+		const std::string load = loadOptions(m_settings.load);
+		const std::string file = nativePath(level.given).filename().string();
+		std::string bytes = asset.file(m_settings.version, kind.command(m_candidate, {file + load, level.radius_m}), what);
 		what += kind.with_level ? ", " + bytesText(asset.bytes()) + " more than the level" : "";
 		made.files.push_back({name, std::move(bytes), what});
-		made.commands.push_back(kind.command(m_candidate, {shellWord(level.given) + loadOptions(m_settings.load), level.radius_m}) +
-								" -o " + name);
+		made.commands.push_back(kind.command(m_candidate, {shellWord(level.given) + load, level.radius_m}) + " -o " + name);
 	}
 
 	const TuneReport& m_report;

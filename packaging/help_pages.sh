@@ -55,7 +55,7 @@ for verb in $(sed -n 's/^|verb|\([^|]*\)|.*/\1/p' "$rows"); do
 	rm "$rows.one"
 done
 
-# A choice, "a|b|c" as a value, has bars of its own: of an option the last field is the help, and the value what is between.
+# A choice, "a|b|c" as a value, contains bars: of an option the last field is the help, and the value what is between.
 common='
 	function parse(  n, i, part)
 	{

@@ -103,7 +103,7 @@ inline bool looksExr(std::string_view bytes)
 	return bytes.starts_with("\x76\x2F\x31\x01");
 }
 
-// Of ASCII letters.
+// Changes ASCII letters only.
 inline char lowerCase(char c)
 {
 	return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;

@@ -103,7 +103,7 @@ std::string placeMacro(const std::string& name, int number, int vulkan_number)
 		   name + " " + std::to_string(number) + "\n#endif\n#endif\n";
 }
 
-// Does the module read tiles and the pictures of its own passes through macros?
+// Does the module read tiles and the pictures of its passes through macros?
 bool hasMacros(const ModuleSettings& settings)
 {
 	return settings.textures != ModuleTextures::fixed || isHlsl(settings);

@@ -55,7 +55,7 @@ std::string toHlsl(const std::string& module)
 		addVectors(it->str(), functions);
 	}
 	std::string text;
-	for (std::size_t at = 0; at < module.size();) // function by function, since each has names of its own
+	for (std::size_t at = 0; at < module.size();) // function by function, since names are local to each
 	{
 		const std::size_t end = std::min(module.find("\n}\n", at), module.size() - 3) + 3;
 		const std::string code = module.substr(at, end - at);

@@ -31,8 +31,7 @@ std::vector<std::pair<std::string, std::string>> presetsOf(const ModuleSettings&
 // True if the language's API has NDC z from 0 to 1, the preset for depth buffers.
 inline bool hasUnitClip(const ModuleSettings& settings)
 {
-	return settings.target == GlslTarget::vulkan || settings.target == GlslTarget::hlsl60 ||
-		   settings.target == GlslTarget::wgsl;
+	return settings.target == GlslTarget::vulkan || settings.target == GlslTarget::hlsl60 || settings.target == GlslTarget::wgsl;
 }
 
 // Features of a method.

@@ -671,7 +671,7 @@ private:
 		if (word == "texelFetch" && types.size() == 3 && types[0].starts_with("texture"))
 		{
 			const std::string place = operand(values[1], kUnary, false);
-			const std::string at = types[1] == "vec3i" ? place + ".xy, " + place + ".z" : place; // a layer of its own
+			const std::string at = types[1] == "vec3i" ? place + ".xy, " + place + ".z" : place; // a separate layer
 			return {"textureLoad(" + values[0].text + ", " + at + ", " + values[2].text + ")",
 					vectorOf(types[0].substr(types[0].size() - 4, 3), 4)};
 		}

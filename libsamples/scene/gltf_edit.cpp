@@ -834,9 +834,12 @@ private:
 	void addTexture(const std::vector<MeshUnit>& units)
 	{
 		const std::size_t texture = items("textures").size();
-		items("textures").push_back({{"sampler", items("samplers").size()}, {"source", items("images").size()}});
+		const std::size_t view = items("bufferViews").size(); // a missing list that items() adds moves the others
+		const std::size_t image = items("images").size();
+		const std::size_t sampler = items("samplers").size();
+		items("textures").push_back({{"sampler", sampler}, {"source", image}});
 		items("samplers").push_back({{"magFilter", 9729U}, {"minFilter", 9987U}, {"wrapS", 33071U}, {"wrapT", 33071U}});
-		items("images").push_back({{"name", "visibility"}, {"mimeType", "image/png"}, {"bufferView", items("bufferViews").size()}});
+		items("images").push_back({{"name", "visibility"}, {"mimeType", "image/png"}, {"bufferView", view}});
 		items("bufferViews").push_back(Document::object());
 		m_added.emplace_back(m_bake.png);
 		std::size_t made = kNoNumber; // for primitives without a material

@@ -59,8 +59,9 @@ struct GltfBaked
 };
 
 // Adds values at these places to a file, after decompressing it and removing an earlier bake. An output with the ending .glb has
-// all buffers inside (required of a .glb file); others have the form of the input. Relative names are rewritten for an output in another folder.
-// Throws Error: file; invalid_input if the file uses the target for something else; unsupported for a result above 1 GiB.
+// all buffers inside (required of a .glb file); others have the form of the input. Relative names are rewritten for an output in
+// another folder. Throws Error: file; invalid_input if the file uses the target for something else; unsupported for a result above
+// 1 GiB.
 GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, const GltfBake& bake,
 				   std::span<const std::string> outputs);
 

@@ -33,7 +33,7 @@ export interface CompositeOptions extends NookAOOptions {
 }
 
 export interface NookPassOptions extends CompositeOptions {
-	/** false: colours come from the pass before, and depth from its target's depth texture or a pass of its own. Default true. */
+	/** false: colours come from the pass before, and depth from its target's depth texture or a separate pass. Default true. */
 	renderScene?: boolean;
 	/** Samples per pixel of the frame, 0 to 16. Default 0. */
 	samples?: number;

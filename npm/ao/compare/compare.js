@@ -68,7 +68,7 @@ const n8 = (quality, half = false) => ({
 		Object.assign(pass.configuration, { halfRes: half, gammaCorrection: false });
 		return {
 			passes: [pass],
-			// The neural denoiser has a radius of its own.
+			// The neural denoiser has another radius.
 			set: ({ r, falloff, denoising = pass.configuration.denoiseRadius, k }) =>
 				Object.assign(pass.configuration, { aoRadius: r * radius, distanceFalloff: falloff, denoiseRadius: denoising, intensity: k }),
 			only: () => { pass.configuration.renderMode = 1; },

@@ -117,7 +117,7 @@ fails 1 '--glsl: found with --hlsl' emit --methods slices --glsl 330 --hlsl 60 -
 fails 1 '--hlsl: missing' emit --methods slices -o m.hlsl
 fails 1 'm.hlsl: found with --glsl, expected -o FILE.glsl' emit --methods slices --glsl 330 -o m.hlsl
 fails 1 'm.glsl: found with --hlsl, expected -o FILE.hlsl' emit --methods slices --hlsl 60 -o m.glsl
-fails 1 '--hlsl: found without a .glsl' emit --methods slices --hlsl 60 -o m.cs
+fails 1 '--hlsl: found without a .hlsl' emit --methods slices --hlsl 60 -o m.cs
 fails 1 "--hlsl: found '50', expected 60" emit --methods slices --hlsl 50 -o m.hlsl
 fails 1 '--hlsl: found with --methods aov' emit --methods aov --hlsl 60 -o m.hlsl
 fails 1 'm.py: found' emit --methods aov --glsl 330 -o m.py

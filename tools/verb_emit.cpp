@@ -135,8 +135,7 @@ void declare(CLI::App& app, EmitOptions& options)
 		 {"--wgsl", takesFlag(options.wgsl), "WGSL instead, in a .wgsl file (WebGPU, Bevy, Babylon.js)", screen},
 		 {"--textures", takesChoice(kModuleTextures, settings.textures),
 		  "How a .glsl file reads textures: tiles and packed pictures directly (fixed, default); all of them through macros that "
-		  "you "
-		  "may define first; or that, with textures apart from their sampler (separate, Vulkan)",
+		  "you may define first; or that, with textures apart from their sampler (separate, Vulkan)",
 		  screen},
 		 {"--tile", takesChoice(kTilePlaces, settings.tile),
 		  "Where the samples of a tile are: in a texture (default; the header holds its texels), or in the module itself", screen},
@@ -295,7 +294,8 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	const GivenFeatures given = givenFeatures(*options.app, kInEmit);
 	if (!glsl && !files.empty())
 	{
-		const std::string without = "without a .glsl file, expected -o FILE.glsl as well";
+		const std::string language = languageOption(options).substr(2);
+		const std::string without = "without a ." + language + " file, expected -o FILE." + language + " as well";
 		refuseGiven(*options.app, {"--glsl", "--hlsl", "--wgsl", "--textures", "--depth", "--normals", "--gather", "--main"},
 					without);
 		for (const FeatureRow* const row : given)

@@ -114,6 +114,9 @@ TEST_CASE("capi: vertices without a triangle are NaN, the others keep their plac
 	const std::vector<float> used = bake(Level::create(kFloorAndWall, kFloorTriangles), options).values<float>("visibility");
 	CHECK(std::isnan(all.front()));
 	CHECK(std::vector(all.begin() + 1, all.end()) == used);
+	// Six vertices are used; six rows of pixels are no vertices.
+	const Options view = Options().set("eye", "0,5,9").set("target", "0,0,0").set("size", "8x6");
+	CHECK(gbuffer(Level::create(positions, triangles), view).array("depth").shape[0] == 6);
 }
 
 TEST_CASE("capi: numbers of any type give the same level, also misaligned", "[capi]")

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace nook
@@ -43,6 +44,7 @@ struct Call
 	std::vector<ReferencePoint> points;
 	std::map<std::string, Image> images; // by the names that options have for them
 	std::vector<uint8_t> counted;        // pixels of a comparison
+	bool per_vertex = false;             // its arrays of floats are per vertex of the level
 
 	// The results.
 	std::vector<MadeArray> arrays;
@@ -55,16 +57,15 @@ inline thread_local Call* t_call = nullptr;
 // Lets this thread work for a call.
 struct Working
 {
-	explicit Working(Call& call)
-	{
-		t_call = &call;
-	}
+	explicit Working(Call& call) : before(std::exchange(t_call, &call)) {}
 	Working(const Working&) = delete;
 	Working& operator=(const Working&) = delete;
 	~Working()
 	{
-		t_call = nullptr;
+		t_call = before;
 	}
+
+	Call* before; // of a caller whose progress callback makes another call
 };
 
 // Keeps an array for the caller, if there is one. Values are numbers or vectors of them: give<float>("normals", normals, {n, 3}).

@@ -451,7 +451,7 @@ void runCalled(Verb (*add)(CLI::App& app), Call& call, const GivenOptions& optio
 			data->files[ending] = readFile(*folder + "/result" + ending);
 		}
 		data->arrays = std::move(call.arrays);
-		if (level != nullptr)
+		if (call.per_vertex)
 		{
 			orderAsGiven(*level, data->arrays);
 		}
@@ -752,7 +752,7 @@ nook_status nook_run_emit(const nook_options* options, nook_result** result)
 
 nook_status nook_run_bake(const nook_level* level, const nook_options* options, nook_result** result)
 {
-	return calledOf(addBakeVerb, level, options, result, [](Call&, std::vector<std::string>&) {});
+	return calledOf(addBakeVerb, level, options, result, [](Call& call, std::vector<std::string>&) { call.per_vertex = true; });
 }
 
 nook_status nook_run_volumes(const nook_level* level, const nook_options* options, nook_result** result)

@@ -16,6 +16,7 @@
 #include <ImfInputFile.h>
 #include <ImfMatrixAttribute.h>
 #include <ImfOutputFile.h>
+#include <ImfPartType.h>
 #include <ImfStringAttribute.h>
 
 #include <algorithm>
@@ -183,10 +184,15 @@ bool isBefore(const std::string& a, const std::string& b)
 	return place(a) < place(b);
 }
 
-// The names of the channels in that order; none if one of them is not of floats, or has other samples than one per pixel.
+// The names of the channels in that order; none if one of them is not of floats, or has other samples than one per pixel, or if the
+// picture is deep.
 std::vector<std::string> channelNames(const Imf::Header& header)
 {
 	std::vector<std::string> names;
+	if (header.hasType() && Imf::isDeepData(header.type()))
+	{
+		return names;
+	}
 	for (auto at = header.channels().begin(); at != header.channels().end(); ++at)
 	{
 		const Imf::Channel& channel = at.channel();

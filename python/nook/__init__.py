@@ -176,12 +176,12 @@ class _Options:
                 except BaseException as interrupt:
                     self.cancelled = True
                     interrupted = interrupt
-            if interrupted is not None:
-                raise interrupted
+            self.failure = interrupted or self.failure
         else:
             call()
         status, text = answer[0]
         if self.failure is not None:
+            _lib.nook_result_destroy(made)  # finished in spite of it; a level is destroyed likewise
             raise self.failure
         if status != 0 and not (status == Error.DIFFERENCE and made.value):
             raise Error(status, text)

@@ -289,6 +289,14 @@ inline const char* nook_settings_fault(const nook_settings& settings)
 	{
 		return "settings: guard: expected 0 or more";
 	}
+	if (settings.width > 16777216 || settings.height > 16777216 || settings.guard > 16777216)
+	{
+		return "settings: width, height, guard: expected at most 16777216";
+	}
+	if (settings.x > 16777216 || settings.y > 16777216 || settings.x < -16777216 || settings.y < -16777216)
+	{
+		return "settings: x, y: expected -16777216 to 16777216";
+	}
 	if (settings.first_row_ndc_y != -1 && settings.first_row_ndc_y != 1)
 	{
 		return "settings: first_row_ndc_y: expected -1 or 1";

@@ -74,6 +74,7 @@ throws '^RangeError: projection: looks left-handed: w = +z' '[1,0,0,0, 0,1,0,0, 
 throws '^RangeError: projection: looks row-major: transpose it' '[1,0,0,0, 0,1,0,0, 0,0,-1,-0.1, 0,0,-1,0]' '{ width: 9, height: 9 }'
 throws '^RangeError: projection: found infinity or NaN' 'Array(16).fill(NaN)' '{ width: 9, height: 9 }'
 throws '^RangeError: settings: width, height: expected 1 or more' '[1,0,0,0, 0,1,0,0, 0,0,-1,-1, 0,0,-0.1,0]' '{}'
+throws '^RangeError: settings: x, y: expected -16777216 to 16777216' '[1,0,0,0, 0,1,0,0, 0,0,-1,-1, 0,0,-0.1,0]' '{ width: 9, height: 9, y: 2147483647 }'
 
 # Modules of device depth preset it: in their own settings, and in JavaScript also in the defaults.
 for target in "es300 false" "vulkan true"; do

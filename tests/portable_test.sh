@@ -10,7 +10,7 @@ fi
 . "$(dirname "$0")/table.sh"
 . "$(dirname "$0")/steps.sh"
 root="$folder/root"
-mkdir -p "$root/tmp" "$root/dev" "$folder/here"
+mkdir -p "$root/levels" "$root/dev" "$folder/here"
 cp -a /dev/null "$root/dev/"
 step "portable.sh" sh "$2/packaging/portable.sh" --folder "$3" "$root/a folder" || finish
 cp "$(dirname "$0")/../docs/pictures/views.png" "$folder/here/mask.png"
@@ -19,7 +19,7 @@ for mask in png gif; do
 	printf 'newmtl a\nmap_d mask.%s\n' $mask >"$folder/here/$mask.mtl"
 	printf 'mtllib %s.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n' $mask >"$folder/here/$mask.obj"
 done
-cp "$folder"/here/* "$root/tmp/"
+cp "$folder"/here/* "$root/levels/"
 
 # both OUTPUT ARGUMENTS...: the same bytes from the program here and from the bundle there.
 both()
@@ -27,18 +27,18 @@ both()
 	output=$1
 	shift
 	step "here: $*" sh -c 'cd "$1" && shift && exec "$@"' sh "$folder/here" "$nook" "$@" -o "$output"
-	step "there: $*" chroot "$root" "/a folder/bin/nook" "$@" -o "/tmp/$output"
-	same "$folder/here/$output" "$root/tmp/$output" "$output differs: $*"
+	step "there: $*" chroot "$root" "/a folder/bin/nook" "$@" -o "/levels/$output"
+	same "$folder/here/$output" "$root/levels/$output" "$output differs: $*"
 }
 both a.json pattern --domain disk --count 9
 both a.exr gbuffer builtin:courtyard --size 64x36
 both b.glb volumes builtin:courtyard --distance 0.6
 step "here: a level with a mask" "$nook" level "$folder/here/png.obj" -o "$folder/here/c.glb"
-step "there: a level with a mask" chroot "$root" "/a folder/bin/nook" level /tmp/png.obj -o /tmp/c.glb
-same "$folder/here/c.glb" "$root/tmp/c.glb" "the level with a mask differs"
+step "there: a level with a mask" chroot "$root" "/a folder/bin/nook" level /levels/png.obj -o /levels/c.glb
+same "$folder/here/c.glb" "$root/levels/c.glb" "the level with a mask differs"
 checks=$((checks + 1))
 status=0
-chroot "$root" "/a folder/bin/nook" info /tmp/gif.obj >"$folder/log" 2>&1 || status=$?
+chroot "$root" "/a folder/bin/nook" info /levels/gif.obj >"$folder/log" 2>&1 || status=$?
 [ $status -eq 5 ] && grep -q 'a picture that only OpenImageIO reads' "$folder/log" || problem "a GIF mask: exit code $status, expected 5: $(cat "$folder/log")"
 checks=$((checks + 1))
 [ -s "$root/a folder/share/man/man1/nook-pattern.1.gz" ] || problem "the bundle has no manual page of nook pattern"

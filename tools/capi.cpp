@@ -491,7 +491,7 @@ nook_status called(Verb (*add)(CLI::App& app), const nook_options* options, nook
 		});
 }
 
-// `prepare` gets the call and returns words of its own.
+// `prepare` gets the call and returns further words.
 template <class Prepare>
 nook_status calledOf(Verb (*add)(CLI::App& app), const nook_level* level, const nook_options* options, nook_result** result,
 					 const Prepare& prepare) noexcept

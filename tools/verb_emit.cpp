@@ -77,7 +77,7 @@ bool isScript(const std::string& path)
 	return formatOf(path, kModuleFormats) == ".js";
 }
 
-// Does the file have names of its own in a program?
+// Does the file define names in a program?
 bool hasNamespace(const std::string& path)
 {
 	return formatOf(path, kModuleFormats) == ".h" || formatOf(path, kModuleFormats) == ".cs";

@@ -361,17 +361,19 @@ std::string fragmentStage(const AovTextSettings& settings, const std::string& bu
 		return text + functions.of("nookVolume") + stageText(assets::aov_fragment_glsl) + kFragmentMain;
 	}
 	text += functions.of("nookReaches") + functions.of("nookFalloff");
-	text += raysText(settings.directions) + functions.of("nookHalfSpaces") + kHalfSpaces;
-	text += functions.of("nookMaskBits");
+	functions.of("nookHalfSpaceTexel"); // in masksText
+	text += kHalfSpaces + functions.of("nookMaskBits");
 	std::string receiver = stageText(assets::aov_fragment_glsl);
 	receiver.resize(receiver.find("\n// AOV eqs. 4 and 5."));
 	return text + receiver + stageText(assets::aov_mask_fragment_glsl) + maskMain(settings.directions);
 }
 
-std::string halfSpacesStage(int directions)
+// The part that the fragment stage of masks and the stage NOOK_HALF_SPACES share.
+std::string masksText(int directions)
 {
 	Functions functions(volumeKernels());
-	return raysText(directions) + functions.of("nookHalfSpaceTexel") + kHalfSpacesMain;
+	return "\n#if defined(NOOK_FRAGMENT) || defined(NOOK_HALF_SPACES)\n" + raysText(directions) +
+		   functions.of("nookHalfSpaceTexel") + "#endif\n";
 }
 
 std::string sparseStage(const AovTextSettings& settings)
@@ -428,11 +430,12 @@ std::string aovText(const AovTextSettings& settings)
 		stage("NOOK_VERTEX", buffers + replaced(kBetween, "NOOK_WAY", "out") + of_vertex.of("nookCross") +
 								 "\n#ifdef NOOK_CHOOSE_FACES\n" + kFaces + inputs(settings) + stageText(assets::aov_faces_glsl) +
 								 "#endif // NOOK_CHOOSE_FACES\n" + stageText(assets::aov_vertex_glsl) + kVertexMain);
+	text += settings.directions > 0 ? masksText(settings.directions) : "";
 	text += stage("NOOK_FRAGMENT", fragmentStage(settings, buffers));
 	text += stage("NOOK_RESOLVE", settings.directions == 0
 									  ? stageText(assets::aov_resolve_glsl) + kResolveMain
 									  : stageText(assets::aov_mask_resolve_glsl) + maskResolveMain(settings.directions));
-	text += settings.directions > 0 ? stage("NOOK_HALF_SPACES", halfSpacesStage(settings.directions)) : "";
+	text += settings.directions > 0 ? stage("NOOK_HALF_SPACES", kHalfSpacesMain) : "";
 	return withPlaces(text + stage("NOOK_SPARSE", sparseStage(settings)), settings.storage_buffers);
 }
 

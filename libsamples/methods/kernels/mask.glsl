@@ -135,7 +135,7 @@ uint nookMaskShare(int word, float alpha, float shift)
 }
 
 // Bits of the rays among `asked`, of 128 * four to 128 * four + 127, that one polygon covers. height: nookHeight(front). polygon: a
-// number of its own, the index of its first corner.
+// number that no other has, the index of its first corner.
 uvec4 nookMaskBits(int count, int four, vec3 n, vec3 front, float height, float alpha, int polygon, float reach, uvec4 asked)
 {
 	vec3 x = nookTangent(n, 0);

@@ -245,6 +245,12 @@ works '' bake kept_two.gltf --radius 1 --rays 32 -o values.csv -o values.npy -o 
 checks=$((checks + 1))
 [ "$(wc -l <values.csv)" -eq 9 ] || problem "values.csv: found $(wc -l <values.csv) lines, expected two nodes of four vertices"
 there s.json values.csv values.json values.npy
+sed 's/"doubleSided": true/&, "alphaMode": "BLEND"/' kept_two.gltf >kept_other.gltf
+"$nook" bake kept_other.gltf --radius 1 --rays 32 --to color-alpha -o blend.csv >../stdout 2>../log
+checks=$((checks + 1))
+grep -q 'color-alpha: 1 materials have no value' ../log || problem "--to color-alpha: found no warning: $(cat ../log)"
+checks=$((checks + 1))
+[ "$(cut -d, -f5 blend.csv | sort -u | wc -l)" -eq 2 ] || problem "blend.csv: found values of a material that has none: $(sort -u blend.csv)"
 fails 3 'kept_two.gltf: TEXCOORD_0: found it in use, expected a set that is free, as --to texcoord:1' bake kept_two.gltf --radius 1 --to texcoord:0 -o b.gltf
 sed 's/"COLOR_0"/"_VISIBILITY"/' kept_two.gltf >kept_other.gltf
 fails 3 'kept_other.gltf: _VISIBILITY: found an accessor of VEC3, component type 5126, expected SCALAR' bake kept_other.gltf --radius 1 -o b.gltf

@@ -263,6 +263,12 @@ private:
 		return index == kNoNumber ? Document::object() : items("materials")[index];
 	}
 
+	// Is the alpha of its colours coverage, which --to color-alpha leaves alone?
+	bool keepsAlpha(const Document& primitive)
+	{
+		return m_bake.target == BakeTarget::color_alpha && materialOf(primitive).value("alphaMode", "OPAQUE") != "OPAQUE";
+	}
+
 	std::string& chunk()
 	{
 		return m_gathered ? m_gathered_bytes : m_file.chunk;
@@ -697,8 +703,7 @@ private:
 		Document& attributes = primitive["attributes"];
 		for (const auto& [name, accessor] : group.accessors)
 		{
-			const Document material = materialOf(primitive);
-			if (name == "COLOR_0" && m_bake.target == BakeTarget::color_alpha && material.value("alphaMode", "OPAQUE") != "OPAQUE")
+			if (name == "COLOR_0" && keepsAlpha(primitive))
 			{
 				m_kept_alpha.insert(numberIn(primitive, "material"));
 				continue;
@@ -738,11 +743,12 @@ private:
 			for (const auto& [primitive, places] : unit.primitives)
 			{
 				const ValueGroup& group = m_groups[unit.groups.at(primitive)];
+				const bool none = keepsAlpha(primitiveOf(unit.mesh, primitive));
 				for (const GltfPlace* const place : places)
 				{
 					for (const auto& [vertex, of_level] : place->vertices)
 					{
-						made.front[of_level] = color ? colorOf(group, vertex) : group.numbers[vertex * m_width];
+						made.front[of_level] = none ? 1.0F : color ? colorOf(group, vertex) : group.numbers[vertex * m_width];
 						if (!made.back.empty())
 						{
 							made.back[of_level] = color ? made.front[of_level] : group.numbers[vertex * m_width + 1];

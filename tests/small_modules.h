@@ -108,6 +108,8 @@ inline nook_block passBlockFor(const GBuffer& gbuffer, const ShadeSettings& shad
 	settings.height = gbuffer.height_px;
 	settings.first_row_ndc_y = first_row_ndc_y;
 	settings.radius = shade.radius_m;
+	settings.most_pixels = shade.max_radius_px;
+	settings.least_pixels = shade.min_radius_px;
 	settings.second_radius = shade.volume.second_radius_m;
 	settings.third_radius = shade.volume.third_radius_m;
 	settings.thickness = shade.volume.thickness_m;

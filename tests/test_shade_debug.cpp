@@ -290,7 +290,8 @@ TEST_CASE("shade debug: OpenGL agrees with the CPU on every view of every method
 				REQUIRE((std::isfinite(gbuffer.depth[i]) || settings.half_resolution || cpu[i] == 0.0F));
 			}
 			CAPTURE(static_cast<int>(method), static_cast<int>(view));
-			checkSamePicture(cpu, gl);
+			// Noise compares up to sixteen pictures, and a GPU's sines put a few of their samples into the next pixel.
+			checkSamePicture(cpu, gl, view == DebugView::noise ? 4e-3 : 1e-3);
 		}
 	}
 }

@@ -152,11 +152,23 @@ GlContext::GlContext(GlApi api, std::optional<int> device)
 	{
 		refuse(api == GlApi::core ? "found no desktop OpenGL" : "found no OpenGL ES");
 	}
-	const std::array<EGLint, 7> core{
-		EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-		EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
-	const std::array<EGLint, 3> es{EGL_CONTEXT_MAJOR_VERSION, 3, EGL_NONE};
-	m_context = eglCreateContext(m_display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, api == GlApi::core ? core.data() : es.data());
+	// Mesa gives its newest version whatever is asked for; NVIDIA gives the version asked for, without compute shaders in 3.3.
+	for (const auto& [major, minor] : api == GlApi::core ? std::vector<std::pair<EGLint, EGLint>>{{4, 5}, {4, 3}, {3, 3}}
+														 : std::vector<std::pair<EGLint, EGLint>>{{3, 0}})
+	{
+		const std::array<EGLint, 7> wanted{EGL_CONTEXT_MAJOR_VERSION,
+										   major,
+										   EGL_CONTEXT_MINOR_VERSION,
+										   minor,
+										   api == GlApi::core ? EGL_CONTEXT_OPENGL_PROFILE_MASK : EGL_NONE,
+										   EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+										   EGL_NONE};
+		m_context = eglCreateContext(m_display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted.data());
+		if (m_context != EGL_NO_CONTEXT)
+		{
+			break;
+		}
+	}
 	if (m_context == EGL_NO_CONTEXT)
 	{
 		refuse("found no context");

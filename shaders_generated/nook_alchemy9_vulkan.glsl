@@ -275,16 +275,22 @@ ivec2 nookPixel(ivec2 cell)
 	return cell * 1;
 }
 
+// The cell that holds a pixel of the picture. Without signs the division is a shift.
+ivec2 nookCellOf(ivec2 pixel)
+{
+	return ivec2(int(uint(pixel.x) / uint(1)), int(uint(pixel.y) / uint(1)));
+}
+
 // First cell of the picture; the guard band around it is not drawn.
 ivec2 nookFirstCell()
 {
-	return ivec2((int(nook.origin.x) + 1 - 1) / 1, (int(nook.origin.y) + 1 - 1) / 1);
+	return nookCellOf(ivec2(int(nook.origin.x) + 1 - 1, int(nook.origin.y) + 1 - 1));
 }
 
 // Last cell of the picture.
 ivec2 nookLastCell()
 {
-	return ivec2((int(nook.origin.x + nook.size.x) - 1) / 1, (int(nook.origin.y + nook.size.y) - 1) / 1);
+	return nookCellOf(ivec2(int(nook.origin.x + nook.size.x) - 1, int(nook.origin.y + nook.size.y) - 1));
 }
 
 // Is a cell in the picture?
@@ -304,18 +310,22 @@ float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 	return beside * turned;
 }
 
-// nookAlikeOf for the surface of a pixel, with the normal n and the line of sight `sight`, and that of the pixel `there`, which
-// is `across` pixels away.
-float nookAlike(vec3 sight, float depth, vec3 n, ivec2 there, vec2 across)
+// nookAlikeOf for the surface of a pixel, with the normal n and the line of sight `sight`, and a surface at depth `there`, `across`
+// pixels away; 0 where that is sky.
+float nookAlikeThere(vec3 sight, float depth, vec3 n, vec2 across, float there, vec3 n_there)
 {
-	vec3 n_there = nookNormal(there);
-	float surface = nookDepth(there);
 	vec2 texel = nookTexel();
 	vec3 both = n + n_there;
-	float w = nook.w_slope * surface + nook.w_start;
-	float apart = w * (both.x * (texel.x * across.x) + both.y * (texel.y * across.y)) - dot(both, sight) * (surface - depth);
+	float w = nook.w_slope * there + nook.w_start;
+	float apart = w * (both.x * (texel.x * across.x) + both.y * (texel.y * across.y)) - dot(both, sight) * (there - depth);
 	float alike = nookAlikeOf(abs(apart) / (2.0f * nook.radius), n, n_there);
-	return surface < NOOK_SKY ? alike : 0.0f;
+	return there < NOOK_SKY ? alike : 0.0f;
+}
+
+// nookAlikeThere for the pixel `there`.
+float nookAlike(vec3 sight, float depth, vec3 n, ivec2 there, vec2 across)
+{
+	return nookAlikeThere(sight, depth, n, across, nookDepth(there), nookNormal(there));
 }
 
 // Mean over the window of the tile, which holds every variant of the samples once. All cells that show the same surface have

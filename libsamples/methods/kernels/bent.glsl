@@ -54,6 +54,29 @@ vec4 nookBentY(ivec2 cell)
 	return nookBent(cell, nookMeanAlong(cell, ivec2(0, 1)));
 }
 
+// A unit vector as two numbers, on the octahedron |x| + |y| + |z| = 1 whose lower half is folded outward.
+vec2 nookFolded(vec3 n)
+{
+	float size = max(abs(n.x) + abs(n.y) + abs(n.z), 1e-20f); // sky has no normal
+	float x = n.x / size;
+	float y = n.y / size;
+	if (n.z < 0.0f)
+	{
+		return vec2((1.0f - abs(y)) * (x < 0.0f ? -1.0f : 1.0f), (1.0f - abs(x)) * (y < 0.0f ? -1.0f : 1.0f));
+	}
+	return vec2(x, y);
+}
+
+// The unit vector that nookFolded stored.
+vec3 nookUnfolded(vec2 folded)
+{
+	float below = max(abs(folded.x) + abs(folded.y) - 1.0f, 0.0f);
+	float x = folded.x - (folded.x < 0.0f ? -below : below);
+	float y = folded.y - (folded.y < 0.0f ? -below : below);
+	vec3 n = vec3(x, y, 1.0f - abs(folded.x) - abs(folded.y));
+	return n / sqrt(dot(n, n));
+}
+
 // A bent normal and visibility as numbers from 0 to 1, for a texture with 8 bits per channel or more: the vector on an
 // octahedron, visibility, 1.
 vec4 nookBentCoded(vec4 bent)

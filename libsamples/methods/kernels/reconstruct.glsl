@@ -14,16 +14,22 @@ ivec2 nookPixel(ivec2 cell)
 	return cell * NOOK_CELL;
 }
 
+// The cell that holds a pixel of the picture. Without signs the division is a shift.
+ivec2 nookCellOf(ivec2 pixel)
+{
+	return ivec2(int(uint(pixel.x) / uint(NOOK_CELL)), int(uint(pixel.y) / uint(NOOK_CELL)));
+}
+
 // First cell of the picture; the guard band around it is not drawn.
 ivec2 nookFirstCell()
 {
-	return ivec2((int(nook.origin.x) + NOOK_CELL - 1) / NOOK_CELL, (int(nook.origin.y) + NOOK_CELL - 1) / NOOK_CELL);
+	return nookCellOf(ivec2(int(nook.origin.x) + NOOK_CELL - 1, int(nook.origin.y) + NOOK_CELL - 1));
 }
 
 // Last cell of the picture.
 ivec2 nookLastCell()
 {
-	return ivec2((int(nook.origin.x + nook.size.x) - 1) / NOOK_CELL, (int(nook.origin.y + nook.size.y) - 1) / NOOK_CELL);
+	return nookCellOf(ivec2(int(nook.origin.x + nook.size.x) - 1, int(nook.origin.y + nook.size.y) - 1));
 }
 
 // Is a cell in the picture?
@@ -62,18 +68,22 @@ float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 	return beside * turned;
 }
 
-// nookAlikeOf for the surface of a pixel, with the normal n and the line of sight `sight`, and that of the pixel `there`, which
-// is `across` pixels away.
-float nookAlike(vec3 sight, float depth, vec3 n, ivec2 there, vec2 across)
+// nookAlikeOf for the surface of a pixel, with the normal n and the line of sight `sight`, and a surface at depth `there`, `across`
+// pixels away; 0 where that is sky.
+float nookAlikeThere(vec3 sight, float depth, vec3 n, vec2 across, float there, vec3 n_there)
 {
-	vec3 n_there = nookNormal(there);
-	float surface = nookDepth(there);
 	vec2 texel = nookTexel();
 	vec3 both = n + n_there;
-	float w = nook.w_slope * surface + nook.w_start;
-	float apart = w * (both.x * (texel.x * across.x) + both.y * (texel.y * across.y)) - dot(both, sight) * (surface - depth);
+	float w = nook.w_slope * there + nook.w_start;
+	float apart = w * (both.x * (texel.x * across.x) + both.y * (texel.y * across.y)) - dot(both, sight) * (there - depth);
 	float alike = nookAlikeOf(abs(apart) / (2.0f * nook.radius), n, n_there);
-	return surface < NOOK_SKY ? alike : 0.0f;
+	return there < NOOK_SKY ? alike : 0.0f;
+}
+
+// nookAlikeThere for the pixel `there`.
+float nookAlike(vec3 sight, float depth, vec3 n, ivec2 there, vec2 across)
+{
+	return nookAlikeThere(sight, depth, n, across, nookDepth(there), nookNormal(there));
 }
 
 // Everything that the bilateral filter reads of a cell, in one texel: visibility, and whether the next cell along x and the
@@ -202,36 +212,26 @@ float nookWindow(ivec2 cell)
 	return open;
 }
 
-// A unit vector as two numbers, on the octahedron |x| + |y| + |z| = 1 whose lower half is folded outward.
-vec2 nookFolded(vec3 n)
+// A unit vector as two numbers: its stereographic projection from (0, 0, -1), the direction of surfaces that face away.
+vec2 nookFlattened(vec3 n)
 {
-	float size = max(abs(n.x) + abs(n.y) + abs(n.z), 1e-20f); // sky has no normal
-	float x = n.x / size;
-	float y = n.y / size;
-	if (n.z < 0.0f)
-	{
-		return vec2((1.0f - abs(y)) * (x < 0.0f ? -1.0f : 1.0f), (1.0f - abs(x)) * (y < 0.0f ? -1.0f : 1.0f));
-	}
-	return vec2(x, y);
+	return n.z < -0.9999f ? vec2(1e4f, 0.0f) : vec2(n.x / (1.0f + n.z), n.y / (1.0f + n.z));
 }
 
-// The unit vector that nookFolded stored.
-vec3 nookUnfolded(vec2 folded)
+// The unit vector that nookFlattened stored.
+vec3 nookUnflattened(vec2 at)
 {
-	float below = max(abs(folded.x) + abs(folded.y) - 1.0f, 0.0f);
-	float x = folded.x - (folded.x < 0.0f ? -below : below);
-	float y = folded.y - (folded.y < 0.0f ? -below : below);
-	vec3 n = vec3(x, y, 1.0f - abs(folded.x) - abs(folded.y));
-	return n / sqrt(dot(n, n));
+	float size = 2.0f / (1.0f + dot(at, at));
+	return vec3(at.x * size, at.y * size, size - 1.0f);
 }
 
-// Everything that upsampling reads of a cell, in one texel of 32-bit floats: visibility, depth, and the normal as nookFolded
-// stores it.
+// Everything that upsampling reads of a cell, in one texel of 32-bit floats: visibility, depth, and the normal as
+// nookFlattened stores it.
 vec4 nookOfSurface(ivec2 cell, float visibility)
 {
 	ivec2 pixel = nookPixel(cell);
-	vec2 folded = nookFolded(nookNormal(pixel));
-	return vec4(visibility, nookDepth(pixel), folded.x, folded.y);
+	vec2 normal = nookFlattened(nookNormal(pixel));
+	return vec4(visibility, nookDepth(pixel), normal.x, normal.y);
 }
 
 // Visibility of a pixel at full resolution, from cells of 2 x 2 pixels: the mean of the one, two or four cells around it that
@@ -245,10 +245,10 @@ float nookUpsample(ivec2 pixel)
 		return 1.0f;
 	}
 	vec3 n = nookNormal(pixel);
-	vec3 centre = nookPosition(pixel, depth);
+	vec3 sight = nookSight(pixel);
 	ivec2 first = nookFirstCell();
 	ivec2 last = nookLastCell();
-	ivec2 cell = ivec2(pixel.x / NOOK_CELL, pixel.y / NOOK_CELL);
+	ivec2 cell = nookCellOf(pixel);
 	float sum = 0.0f;
 	float weights = 0.0f;
 	int corners = NOOK_CELL * NOOK_CELL;
@@ -256,21 +256,12 @@ float nookUpsample(ivec2 pixel)
 	{
 		int x = i % NOOK_CELL;
 		int y = i / NOOK_CELL;
-		float used = 0.0f;
-		if (x <= pixel.x - NOOK_CELL * cell.x && y <= pixel.y - NOOK_CELL * cell.y)
-		{
-			used = 1.0f;
-		}
 		ivec2 there = ivec2(clamp(cell.x + x, first.x, last.x), clamp(cell.y + y, first.y, last.y));
 		vec4 one = nookPacked(there);
-		if (one.y >= NOOK_SKY)
-		{
-			used = 0.0f;
-			one.y = depth;
-		}
-		vec3 n_there = nookUnfolded(vec2(one.z, one.w));
-		float apart = nookApartFrom(centre, n, nookPosition(nookPixel(there), one.y), n_there);
-		float weight = used * nookAlikeOf(apart, n, n_there);
+		ivec2 at = nookPixel(there);
+		vec2 across = vec2(float(at.x - pixel.x), float(at.y - pixel.y));
+		float weight = nookAlikeThere(sight, depth, n, across, one.y, nookUnflattened(vec2(one.z, one.w)));
+		weight = x <= pixel.x - NOOK_CELL * cell.x && y <= pixel.y - NOOK_CELL * cell.y ? weight : 0.0f;
 		sum += weight * one.x;
 		weights += weight;
 	}

@@ -160,21 +160,6 @@ vec3 nookSight(ivec2 pixel)
 				1.0f);
 }
 
-// From the surface of a pixel to that of another one, which is `across` pixels away (x to the right, y downward) and `deeper`
-// metres deeper, with the clip-space w there. sight: of the first pixel.
-vec3 nookOffset(vec3 sight, vec2 across, float deeper, float w)
-{
-	vec2 texel = nookTexel();
-	return vec3(across.x * texel.x * w - sight.x * deeper, across.y * texel.y * w - sight.y * deeper, -deeper);
-}
-
-// Size in the picture of one metre across the view direction, at a depth: pixels along x (to the right) and y (downward).
-vec2 nookScale(float depth)
-{
-	float w = nook.w_slope * depth + nook.w_start;
-	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
-}
-
 // First and last pixel that hold depth, relative to a pixel.
 vec4 nookAround(ivec2 pixel)
 {
@@ -218,18 +203,18 @@ float nookSlack(float depth, float radius)
 	return nookDepthError(depth) + nookDepthError(depth + radius);
 }
 
-// The radius that is used at a depth: limited to nook.most_px pixels in the picture, and at least nook.least_px.
-float nookRadius(float radius, float depth)
+// The radius that is used where a metre has a size of `metre` pixels: limited to nook.most_px pixels in the picture, and at least
+// nook.least_px.
+float nookRadiusOf(float radius, vec2 metre)
 {
-	vec2 scale = nookScale(depth);
-	float pixels = max(abs(scale.x), abs(scale.y));
+	float pixels = max(abs(metre.x), abs(metre.y));
 	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
 }
 
 // Visibility of a pixel: ALC eq. 10 with lengths in radii, so that the picture does not depend on the unit of length. With the
 // radius r, the paper's sigma is sigma * r here, its epsilon epsilon * r^2, its beta beta. Samples are (x, y, unused, weight),
-// uniform on the disk. Emitted with --cut, surfaces farther away than the radius do not count (H in eq. 9).
-// The rounding of depths and normals is subtracted from v.n together with beta.
+// uniform on the disk, with a sum of weights of 1. Emitted with --cut, surfaces farther away than the radius do not count (H in
+// eq. 9). The rounding of depths and normals is subtracted from v.n together with beta, for normals as if v were longer by epsilon.
 float nookAlchemy(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -238,11 +223,16 @@ float nookAlchemy(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = nookRadius(nook.radius, depth);
-	vec2 scale = nookScale(depth) * radius;
+	vec2 texel = nookTexel();
+	vec2 step_of = texel * (nook.w_slope * depth + nook.w_start); // size of a pixel at this depth
+	vec2 metre = vec2(1.0f / step_of.x, -1.0f / step_of.y);
+	float radius = nookRadiusOf(nook.radius, metre);
+	vec2 scale = metre * radius;
+	vec2 turn = texel * nook.w_slope; // by how much the line of sight changes from pixel to pixel
 	vec3 sight = nookSight(pixel);
 	float facing = max(0.0f, dot(n, sight));
-	float bias = (nook.beta * depth + nookSlack(depth, radius) * facing) / radius;
+	float bias = nook.beta * depth + nookSlack(depth, radius) * facing;
+	float least = nook.epsilon * radius * radius;
 	int row = nookAlchemyVariant(pixel);
 	vec4 around = nookAround(pixel);
 	float pixels = max(abs(scale.x), abs(scale.y));
@@ -252,20 +242,21 @@ float nookAlchemy(ivec2 pixel)
 	for (int i = 0; i < count; ++i)
 	{
 		vec4 point = nookAlchemySample(row, i);
-		weights += point.w;
 		vec2 across = nookAcross(around, vec2(point.x, point.y), scale);
 		ivec2 there = nookThere(pixel, across);
 		float surface = 0.0f;
 		surface = nookDepth(there);
-		float w = nook.w_slope / radius * surface + nook.w_start / radius;
-		vec3 v = nookOffset(sight, across, (surface - depth) / radius, w);
-		float square = dot(v, v);
-		float height = max(0.0f, dot(v, n) - bias - nook.normal_error * sqrt(square));
-		bool counts = surface < NOOK_SKY;
-		float adds = point.w * height / (square + nook.epsilon);
-		sum += counts ? adds : 0.0f;
+		// The surface lies at (x, y, -deeper). Sky does not occlude: it is so far away that it adds nothing.
+		float deeper = min(surface, 1e15f) - depth;
+		float x = across.x * step_of.x + deeper * (across.x * turn.x - sight.x);
+		float y = across.y * step_of.y + deeper * (across.y * turn.y - sight.y);
+		float square = x * x + (y * y + (deeper * deeper + least));
+		float inverse = 1.0f / sqrt(square);
+		float height = x * n.x + y * n.y - (deeper * n.z + bias);
+		float adds = point.w * inverse * clamp(height * inverse - nook.normal_error, 0.0f, 1.0f);
+		sum += adds;
 	}
-	float open = pow(max(0.0f, 1.0f - 2.0f * nook.sigma * sum / weights), nook.contrast);
+	float open = pow(max(0.0f, 1.0f - 2.0f * nook.sigma * radius * sum), nook.contrast);
 	return open;
 }
 

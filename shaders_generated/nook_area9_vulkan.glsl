@@ -240,23 +240,23 @@ vec2 nookScale(float depth)
 	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
 }
 
-// The tangent plane of a pixel for nookPlaneRise. z: product of the normal with the line of sight; x, y: its change per pixel to
-// the right and downward, at a clip-space w of 1.
-vec3 nookPlane(ivec2 pixel, vec3 n)
+// The tangent plane of a pixel for nookPlaneRise, with the clip-space w of the pixel. x, y: how far the line of sight one pixel to
+// the right, or downward, lies above the plane at that w; z: product of the normal with the line of sight, above 0 because a normal
+// that is turned away counts as perpendicular to it; w: nook.w_slope / w.
+vec4 nookPlane(ivec2 pixel, vec3 n, float w)
 {
 	vec2 texel = nookTexel();
-	return vec3(n.x * texel.x, n.y * texel.y, dot(n, nookSight(pixel)));
+	return vec4(n.x * texel.x * w, n.y * texel.y * w, max(dot(n, nookSight(pixel)), 1e-5f), nook.w_slope / w);
 }
 
 // Follows another line of sight to the point `height` metres above a tangent plane (nookPlane), and returns how much deeper that
-// point is than the pixel, whose clip-space w is given; NOOK_SKY where the plane does not face the camera there. `across`: offset
-// of the line from the centre of the pixel, in pixels (x to the right, y downward). The result comes from that offset, because a
-// difference of two depths would lose its digits far away.
-float nookPlaneRise(vec3 plane, vec2 across, float w, float height)
+// point is than the pixel; far away where the plane does not face the camera there. `across`: offset of the line from the centre of
+// the pixel, in pixels (x to the right, y downward). The result comes from that offset, because a difference of two depths would
+// lose its digits far away.
+float nookPlaneRise(vec4 plane, vec2 across, float height)
 {
 	float beside = plane.x * across.x + plane.y * across.y;
-	float fall = nook.w_slope * beside - plane.z;
-	return fall > -1e-6f ? NOOK_SKY : (height - w * beside) / fall;
+	return (beside - height) / max(plane.z - plane.w * beside, 1e-6f);
 }
 
 // First and last pixel that hold depth, relative to a pixel.
@@ -302,33 +302,31 @@ float nookSlack(float depth, float radius)
 	return nookDepthError(depth) + nookDepthError(depth + radius);
 }
 
-// The radius that is used at a depth: limited to nook.most_px pixels in the picture, and at least nook.least_px.
-float nookRadius(float radius, float depth)
+// The radius that is used where a metre has a size of `metre` pixels: limited to nook.most_px pixels in the picture, and at least
+// nook.least_px.
+float nookRadiusOf(float radius, vec2 metre)
 {
-	vec2 scale = nookScale(depth);
-	float pixels = max(abs(scale.x), abs(scale.y));
+	float pixels = max(abs(metre.x), abs(metre.y));
 	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
 }
 
-// Integral of the falloff along a line of the ball, from its end at -reach (nearest the camera) to `end` <= reach, in radii.
-// The falloff is constant, so that volume alone counts (VO 3), or 1 - d^2 at a distance of d radii from the point.
-float nookAlong(float reach, float end)
+// The radius that is used at a depth.
+float nookRadius(float radius, float depth)
 {
-	return end + reach;
+	return nookRadiusOf(radius, nookScale(depth));
 }
 
-// Integral of the falloff from `from` to `to`.
-float nookPiece(float reach, float from, float to)
+// Weight of a line of the ball as far as a position, as a share of the whole. The falloff is constant, so that volume alone counts
+// (VO 3), or 1 - d^2 at a distance of d radii from the point.
+float nookAlong(float place)
 {
-	return to - from;
+	return place;
 }
 
-// Open part of a line, whose part above the tangent plane ends at `end` and measures `whole`, with a surface at `front` that is
-// `thick` deep (VO 4.3). Positions are in radii along the line.
-float nookOpen(float reach, float end, float whole, float front, float thick)
+// Covered share of a line, whose part above the tangent plane ends at `end`, by a surface from `front` to `back` (VO 4.3).
+float nookCoveredShare(float end, float front, float back)
 {
-	float first = clamp(front, -reach, end);
-	return whole - nookPiece(reach, first, end);
+	return clamp(nookAlong(min(back, end)) - nookAlong(max(front, 0.0f)), 0.0f, 1.0f);
 }
 
 // The normal, where the method uses it; without it, no texture of normals is read.
@@ -337,46 +335,52 @@ vec3 nookVoNormal(ivec2 pixel)
 	return nookNormal(pixel);
 }
 
-// Evaluates one line of the ball, given as (x, y, half length, weight). Returns the weight of its open part, the weight of the
-// whole line above the tangent plane, and how certain it is that the surface seen there has nothing to do with the ball: 0
-// where that surface is no more than one radius in front of the point, rising to 1 where it is two radii in front.
-vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 plane, vec4 around, float w, float depth, float radius, float thick)
+// Evaluates one line of the ball, given as (x, y, half length, weight). Returns the weight of its covered part, the weight of the
+// whole line above the tangent plane, and for paired samples how certain it is that the surface seen there has nothing to do with
+// the ball: 0 where that surface is no more than one radius in front of the point, rising to 1 where it is two radii in front.
+// slack: nookSlack.
+vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec4 plane, vec4 around, float depth, float radius, float slack, float thick)
 {
 	vec2 across = nookAcross(around, vec2(line.x, line.y), scale);
-	float end = line.z;
-	float slack = 0.0f;
-	end = clamp(nookPlaneRise(plane, across, w / radius, 0.0f), -line.z, line.z);
-	slack = nookSlack(depth, radius) / radius;
-	float front = (nookDepth(nookThere(pixel, across)) - depth) / radius + slack;
-	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim of the ball has no length and no weight
-	float whole = nookAlong(line.z, end);
-	float open = nookOpen(line.z, end, whole, front, thick / radius);
-	return vec3(share * open, share * whole, clamp(-1.0f - front, 0.0f, 1.0f));
+	float share = 0.5f / max(line.z * radius, 1e-20f); // a line on the rim of the ball has no length and no weight
+	float end = 1.0f;
+	float away = nookDepth(nookThere(pixel, across)) - depth;
+	end = clamp(0.5f + share * nookPlaneRise(plane, across, 0.0f), 0.0f, 1.0f);
+	away += slack;
+	float front = 0.5f + share * away;
+	float back = 1.0f;
+	float missing = 0.0f;
+	return vec3(line.w * nookCoveredShare(end, front, back), line.w * nookAlong(end), missing);
 }
 
-// The inverse of nookEven; NOOK_SKY at infinity and beyond.
+// The inverse of nookEven; very far away at infinity and beyond.
 float nookUneven(float even)
 {
-	float below = nook.w_start - even * nook.w_slope;
-	if (below <= 0.0f)
-	{
-		return NOOK_SKY;
-	}
-	return (nook.w_slope + even * nook.w_start) / below;
+	return (nook.w_slope + even * nook.w_start) / max(nook.w_start - even * nook.w_slope, 1e-20f);
 }
 
-// Mean of the open part of a line over surfaces that are spread evenly from even - spread to even + spread, in the measure of
-// nookEven (the ramp of VO 4.2); two points of Gauss quadrature. `back`: metres by which the surfaces are moved away, to find
-// where they end.
-float nookOpenRamp(float reach, float end, float even, float spread, float depth, float radius, float back)
+// Surfaces along a line that is 1 / share metres long, spread evenly in the measure of nookEven from even - spread to even + spread
+// (the ramp of VO 4.2). x: place of the mean; y, z: the first and the last surface lie at x - y / (1 + z) and x + y / (1 - z).
+vec3 nookRamp(float even, float spread, float depth, float share)
 {
-	float first = clamp((nookUneven(even - spread) + back - depth) / radius, -reach, end);
-	float last = clamp((nookUneven(even + spread) + back - depth) / radius, -reach, end);
-	float middle = 0.5f * (first + last);
-	float offset = 0.28867513f * (last - first);
-	float low = clamp(0.5f + 0.5f * (even - nookEven(depth + radius * (middle - offset) - back)) / spread, 0.0f, 1.0f);
-	float high = clamp(0.5f + 0.5f * (even - nookEven(depth + radius * (middle + offset) - back)) / spread, 0.0f, 1.0f);
-	return nookAlong(reach, first) + 0.5f * (low + high) * (last - first);
+	float surface = nookUneven(even);
+	float w = nook.w_slope * surface + nook.w_start;
+	float per_w = spread * w / (nook.w_slope * nook.w_slope + nook.w_start * nook.w_start); // depth per w, near the mean
+	return vec3(0.5f + share * (surface - depth), share * per_w * w, nook.w_slope * per_w);
+}
+
+// Mean over the surfaces of a ramp of the covered share of a line that ends at `end`; two points of Gauss quadrature.
+float nookCoveredRamp(float end, vec3 ramp)
+{
+	float first = clamp(ramp.x - ramp.y / (1.0f + ramp.z), 0.0f, end);
+	float last = clamp(ramp.x + ramp.y / max(1.0f - ramp.z, 1e-6f), 0.0f, end);
+	float width = last - first;
+	float low = first + 0.21132487f * width;
+	float high = first + 0.78867513f * width;
+	// Share of the surfaces in front of a place.
+	float before_low = clamp(0.5f + 0.5f * (low - ramp.x) / (ramp.y + ramp.z * (low - ramp.x)), 0.0f, 1.0f);
+	float before_high = clamp(0.5f + 0.5f * (high - ramp.x) / (ramp.y + ramp.z * (high - ramp.x)), 0.0f, 1.0f);
+	return nookAlong(end) - nookAlong(last) + 0.5f * width * (before_low + before_high);
 }
 
 // The level of moments that a sample reads, from 1; 0 is the picture itself. Its texels have 0.3 to 0.6 of the side of the
@@ -386,73 +390,78 @@ int nookAreaLevel(float lod, vec4 area)
 	return clamp(int(floor(lod + area.z - 0.75f)), 0, 6);
 }
 
-// Evaluates one sample, given as (x, y, log2 of the side of its area in radii, weight). Returns the same three numbers as
-// nookVoLineAt.
-vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 plane, vec4 around, float w, float depth, float radius,
-				  float thick, float lod)
+// Variance of nookEven along a tangent plane within a texel, divided by the texel's number of pixels minus 1.
+float nookFlatVariance(vec4 plane, float depth)
 {
-	float reach = sqrt(max(0.0f, 1.0f - area.x * area.x - area.y * area.y));
+	float w = nook.w_slope * depth + nook.w_start;
+	float steep = (nook.w_slope * nook.w_slope + nook.w_start * nook.w_start) / (plane.z * w * w); // nookEven, per metre of plane
+	return (plane.x * plane.x + plane.y * plane.y) * steep * steep / 12.0f;
+}
+
+// Evaluates one sample, given as (x, y, log2 of the side of its area in radii, weight). Returns the same three numbers as
+// nookVoLineAt. lod: log2 of the radius in pixels; flat_variance: nookFlatVariance.
+vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec4 plane, vec4 around, float depth, float radius, float slack, float thick,
+				  float lod, float flat_variance)
+{
+	float reach = sqrt(max(1e-12f, 1.0f - area.x * area.x - area.y * area.y));
 	ivec2 there = nookThere(pixel, nookAcross(around, vec2(area.x, area.y), scale));
-	int level = nookAreaLevel(lod, area) - 1;
-	if (level < 0)
+	int level = nookAreaLevel(lod, area);
+	if (level == 0)
 	{
-		return nookVoLineAt(pixel, vec4(area.x, area.y, reach, area.w), scale, plane, around, w, depth, radius, thick);
+		return nookVoLineAt(pixel, vec4(area.x, area.y, reach, area.w), scale, plane, around, depth, radius, slack, thick);
 	}
-	int side = 2 << level;
-	ivec2 texel = ivec2(there.x / side, there.y / side);
-	vec4 moments = nookLevel(texel, level);
-	float even = moments.x;
+	ivec2 texel = ivec2(there.x >> level, there.y >> level);
+	vec4 moments = nookLevel(texel, level - 1);
+	float share = 0.5f / (reach * radius);
 	float variance = moments.y;
-	float end = reach;
+	float end = 1.0f;
 	// From the centre of the pixel to the centre of those pixels of the texel that hold depth.
-	int x_ends = max(texel.x * side, nook.first.x) + min((texel.x + 1) * side, nook.last.x + 1);
-	int y_ends = max(texel.y * side, nook.first.y) + min((texel.y + 1) * side, nook.last.y + 1);
-	float x = 0.5f * float(x_ends) - 0.5f - float(pixel.x);
-	float y = 0.5f * float(y_ends) - 0.5f - float(pixel.y);
-	end = clamp(nookPlaneRise(plane, vec2(x, y), w / radius, 0.0f), -reach, reach);
+	int beyond = (1 << level) - 1;
+	ivec2 start = ivec2(texel.x << level, texel.y << level);
+	int x_ends = max(start.x, nook.first.x) + min(start.x + beyond, nook.last.x);
+	int y_ends = max(start.y, nook.first.y) + min(start.y + beyond, nook.last.y);
+	vec2 across = vec2(0.5f * float(x_ends) - float(pixel.x), 0.5f * float(y_ends) - float(pixel.y));
+	end = clamp(0.5f + share * nookPlaneRise(plane, across, 0.0f), 0.0f, 1.0f);
 	// Subtracts the variance that a surface along the tangent plane has within the texel: it does not occlude.
-	float steep = (nook.w_slope * nook.w_slope + nook.w_start * nook.w_start) / (max(plane.z, 1e-6f) * w); // nookEven, per pixel
-	variance = max(0.0f, variance - (plane.x * plane.x + plane.y * plane.y) * steep * steep * float(side * side - 1) / 12.0f);
-	// An even spread with the variance of the texel. The paper spreads one standard deviation to each side, a third of the variance,
-	// which has 2 to 10 % more error.
-	float spread = max(sqrt(3.0f * variance), max(1e-6f * abs(even), 1e-30f)); // the last one for sky alone
-	float whole = nookAlong(reach, end);
-	float open = nookOpenRamp(reach, end, even, spread, depth, radius, 0.0f);
-	open = whole + (open - whole) * moments.z / max(moments.w, 1.0f); // sky is open
-	float share = area.w / max(nookAlong(reach, reach), 1e-20f);
-	float missing = clamp(-1.0f - (nookUneven(even + spread) - depth) / radius, 0.0f, 1.0f);
-	return vec3(share * open, share * whole, missing);
+	variance = max(0.0f, variance - flat_variance * float((1 << (2 * level)) - 1));
+	// An even spread with the variance of the texel. The paper spreads one standard deviation to each side, a third of the
+	// variance, which has 2 to 10 % more error.
+	float spread = max(sqrt(3.0f * variance), max(1e-6f * abs(moments.x), 1e-30f)); // the last one for sky alone
+	vec3 ramp = nookRamp(moments.x, spread, depth, share);
+	float covered = nookCoveredRamp(end, ramp);
+	float missing = 0.0f;
+	// Sky is open.
+	return vec3(area.w * covered * moments.z / max(moments.w, 1.0f), area.w * nookAlong(end), missing);
 }
 
 // Visibility for one radius (VO 4, 4.1, 4.2 and 4.4). With the normal, samples end at the tangent plane, and the open part is
 // divided by the part above the plane. Without it, an open surface that faces the camera reads 1/2. Paired samples: 2i and 2i + 1
 // lie on opposite sides.
-float nookVoIn(ivec2 pixel, vec3 n, vec3 plane, vec4 around, int row, vec2 metre, float depth, float radius, float thick)
+float nookVoIn(ivec2 pixel, vec3 n, vec4 plane, vec4 around, int row, vec2 metre, float depth, float radius, float thick)
 {
-	float w = nook.w_slope * depth + nook.w_start;
 	vec2 scale = metre * radius;
 	float pixels = max(abs(scale.x), abs(scale.y));
+	float flat_variance = 0.0f;
 	pixels = sqrt(abs(scale.x * scale.y));
+	flat_variance = nookFlatVariance(plane, depth);
 	if (pixels < 0.5f)
 	{
 		return 1.0f; // every sample falls on the pixel itself
 	}
 	int count = nookCount(pixels);
-	float open = 0.0f;
+	float slack = nookSlack(depth, radius);
+	float covered = 0.0f;
 	float whole = 0.0f;
 	vec3 own = vec3(0.0f, 0.0f, 0.0f);
 	vec3 before = vec3(0.0f, 0.0f, 0.0f);
 	for (int i = 0; i < count; ++i)
 	{
-		own = nookVoAreaAt(pixel, nookVoAreaSample(row, i), scale, plane, around, w, depth, radius, thick, log2(pixels));
-		open += own.x;
+		own =
+			nookVoAreaAt(pixel, nookVoAreaSample(row, i), scale, plane, around, depth, radius, slack, thick, log2(pixels), flat_variance);
+		covered += own.x;
 		whole += own.y;
 	}
-	if (whole > 0.0f)
-	{
-		return clamp(open / whole, 0.0f, 1.0f); // rounding may exceed the range
-	}
-	return 1.0f; // all samples lie where the falloff is 0
+	return clamp(1.0f - covered / max(whole, 1e-20f), 0.0f, 1.0f); // 1 where the falloff is 0 at all samples
 }
 
 // Visibility of a pixel.
@@ -464,7 +473,7 @@ float nookVo(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	vec3 plane = nookPlane(pixel, n);
+	vec4 plane = nookPlane(pixel, n, nook.w_slope * depth + nook.w_start);
 	vec4 around = nookAround(pixel);
 	int row = nookVoAreaVariant(pixel);
 	vec2 metre = nookScale(depth);

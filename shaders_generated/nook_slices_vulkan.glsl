@@ -166,12 +166,18 @@ ivec2 nookThere(ivec2 pixel, vec2 across)
 	return ivec2(pixel.x + int(across.x), pixel.y + int(across.y));
 }
 
-// The radius that is used at a depth: limited to nook.most_px pixels in the picture, and at least nook.least_px.
+// The radius that is used where a metre has a size of `metre` pixels: limited to nook.most_px pixels in the picture, and at least
+// nook.least_px.
+float nookRadiusOf(float radius, vec2 metre)
+{
+	float pixels = max(abs(metre.x), abs(metre.y));
+	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
+}
+
+// The radius that is used at a depth.
 float nookRadius(float radius, float depth)
 {
-	vec2 scale = nookScale(depth);
-	float pixels = max(abs(scale.x), abs(scale.y));
-	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
+	return nookRadiusOf(radius, nookScale(depth));
 }
 
 // Without a tile: number of a pixel in its window of 4 x 4 cells, 0 to 15, which selects the azimuth of its slices. The numbers

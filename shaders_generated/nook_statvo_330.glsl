@@ -160,12 +160,18 @@ vec2 nookScale(float depth)
 	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
 }
 
-// The radius that is used at a depth: limited to nook.most_px pixels in the picture, and at least nook.least_px.
+// The radius that is used where a metre has a size of `metre` pixels: limited to nook.most_px pixels in the picture, and at least
+// nook.least_px.
+float nookRadiusOf(float radius, vec2 metre)
+{
+	float pixels = max(abs(metre.x), abs(metre.y));
+	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
+}
+
+// The radius that is used at a depth.
 float nookRadius(float radius, float depth)
 {
-	vec2 scale = nookScale(depth);
-	float pixels = max(abs(scale.x), abs(scale.y));
-	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
+	return nookRadiusOf(radius, nookScale(depth));
 }
 
 // Half side of the box in metres, limited to nook.largest_px pixels in the picture.
@@ -405,31 +411,23 @@ vec3 nookSight(ivec2 pixel)
 				1.0f);
 }
 
-// The tangent plane of a pixel for nookPlaneRise. z: product of the normal with the line of sight; x, y: its change per pixel to
-// the right and downward, at a clip-space w of 1.
-vec3 nookPlane(ivec2 pixel, vec3 n)
-{
-	vec2 texel = nookTexel();
-	return vec3(n.x * texel.x, n.y * texel.y, dot(n, nookSight(pixel)));
-}
-
-// Follows another line of sight to the point `height` metres above a tangent plane (nookPlane), and returns how much deeper that
-// point is than the pixel, whose clip-space w is given; NOOK_SKY where the plane does not face the camera there. `across`: offset
-// of the line from the centre of the pixel, in pixels (x to the right, y downward). The result comes from that offset, because a
-// difference of two depths would lose its digits far away.
-float nookPlaneRise(vec3 plane, vec2 across, float w, float height)
-{
-	float beside = plane.x * across.x + plane.y * across.y;
-	float fall = nook.w_slope * beside - plane.z;
-	return fall > -1e-6f ? NOOK_SKY : (height - w * beside) / fall;
-}
-
 // Slope between two depths that differ by `rise`, of a function of depth that is affine in the picture on every plane.
 float nookStatSlope(float depth, float rise)
 {
 	float near = nook.w_slope * depth + nook.w_start;
 	float far = nook.w_slope * (depth + rise) + nook.w_start;
 	return rise * (nook.w_slope * nook.w_slope + nook.w_start * nook.w_start) / (near * far);
+}
+
+// How much deeper than a pixel its tangent plane is `across` pixels away (x to the right, y downward); NOOK_SKY where the plane
+// does not face the camera there. w: clip-space w of the pixel.
+float nookStatRise(ivec2 pixel, vec2 across, float w)
+{
+	vec3 n = nookNormal(pixel);
+	vec2 texel = nookTexel();
+	float beside = n.x * texel.x * across.x + n.y * texel.y * across.y;
+	float fall = nook.w_slope * beside - dot(n, nookSight(pixel));
+	return fall > -1e-6f ? NOOK_SKY : -w * beside / fall;
 }
 
 // From a pixel to its neighbour: the smallest slope as x and the smallest negated slope as y, of the surface between them
@@ -456,7 +454,7 @@ vec2 nookStatStep(ivec2 pixel, ivec2 there)
 	vec2 result = vec2(slope, -slope);
 	vec2 across = vec2(float(there.x - pixel.x), float(there.y - pixel.y));
 	float w = nook.w_slope * depth + nook.w_start;
-	float rise = nookPlaneRise(nookPlane(pixel, nookNormal(pixel)), across, w, 0.0f);
+	float rise = nookStatRise(pixel, across, w);
 	if (rise >= NOOK_SKY || nook.w_slope * (depth + rise) + nook.w_start <= 0.0f)
 	{
 		return vec2(-NOOK_SKY, -NOOK_SKY);

@@ -153,23 +153,23 @@ vec2 nookScale(float depth)
 	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
 }
 
-// The tangent plane of a pixel for nookPlaneRise. z: product of the normal with the line of sight; x, y: its change per pixel to
-// the right and downward, at a clip-space w of 1.
-vec3 nookPlane(ivec2 pixel, vec3 n)
+// The tangent plane of a pixel for nookPlaneRise, with the clip-space w of the pixel. x, y: how far the line of sight one pixel to
+// the right, or downward, lies above the plane at that w; z: product of the normal with the line of sight, above 0 because a normal
+// that is turned away counts as perpendicular to it; w: nook.w_slope / w.
+vec4 nookPlane(ivec2 pixel, vec3 n, float w)
 {
 	vec2 texel = nookTexel();
-	return vec3(n.x * texel.x, n.y * texel.y, dot(n, nookSight(pixel)));
+	return vec4(n.x * texel.x * w, n.y * texel.y * w, max(dot(n, nookSight(pixel)), 1e-5f), nook.w_slope / w);
 }
 
 // Follows another line of sight to the point `height` metres above a tangent plane (nookPlane), and returns how much deeper that
-// point is than the pixel, whose clip-space w is given; NOOK_SKY where the plane does not face the camera there. `across`: offset
-// of the line from the centre of the pixel, in pixels (x to the right, y downward). The result comes from that offset, because a
-// difference of two depths would lose its digits far away.
-float nookPlaneRise(vec3 plane, vec2 across, float w, float height)
+// point is than the pixel; far away where the plane does not face the camera there. `across`: offset of the line from the centre of
+// the pixel, in pixels (x to the right, y downward). The result comes from that offset, because a difference of two depths would
+// lose its digits far away.
+float nookPlaneRise(vec4 plane, vec2 across, float height)
 {
 	float beside = plane.x * across.x + plane.y * across.y;
-	float fall = nook.w_slope * beside - plane.z;
-	return fall > -1e-6f ? NOOK_SKY : (height - w * beside) / fall;
+	return (beside - height) / max(plane.z - plane.w * beside, 1e-6f);
 }
 
 // First and last pixel that hold depth, relative to a pixel.
@@ -215,33 +215,31 @@ float nookSlack(float depth, float radius)
 	return nookDepthError(depth) + nookDepthError(depth + radius);
 }
 
-// The radius that is used at a depth: limited to nook.most_px pixels in the picture, and at least nook.least_px.
-float nookRadius(float radius, float depth)
+// The radius that is used where a metre has a size of `metre` pixels: limited to nook.most_px pixels in the picture, and at least
+// nook.least_px.
+float nookRadiusOf(float radius, vec2 metre)
 {
-	vec2 scale = nookScale(depth);
-	float pixels = max(abs(scale.x), abs(scale.y));
+	float pixels = max(abs(metre.x), abs(metre.y));
 	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
 }
 
-// Integral of the falloff along a line of the ball, from its end at -reach (nearest the camera) to `end` <= reach, in radii.
-// The falloff is constant, so that volume alone counts (VO 3), or 1 - d^2 at a distance of d radii from the point.
-float nookAlong(float reach, float end)
+// The radius that is used at a depth.
+float nookRadius(float radius, float depth)
 {
-	return end + reach;
+	return nookRadiusOf(radius, nookScale(depth));
 }
 
-// Integral of the falloff from `from` to `to`.
-float nookPiece(float reach, float from, float to)
+// Weight of a line of the ball as far as a position, as a share of the whole. The falloff is constant, so that volume alone counts
+// (VO 3), or 1 - d^2 at a distance of d radii from the point.
+float nookAlong(float place)
 {
-	return to - from;
+	return place;
 }
 
-// Open part of a line, whose part above the tangent plane ends at `end` and measures `whole`, with a surface at `front` that is
-// `thick` deep (VO 4.3). Positions are in radii along the line.
-float nookOpen(float reach, float end, float whole, float front, float thick)
+// Covered share of a line, whose part above the tangent plane ends at `end`, by a surface from `front` to `back` (VO 4.3).
+float nookCoveredShare(float end, float front, float back)
 {
-	float first = clamp(front, -reach, end);
-	return whole - nookPiece(reach, first, end);
+	return clamp(nookAlong(min(back, end)) - nookAlong(max(front, 0.0f)), 0.0f, 1.0f);
 }
 
 // The normal, where the method uses it; without it, no texture of normals is read.
@@ -250,51 +248,49 @@ vec3 nookVoNormal(ivec2 pixel)
 	return nookNormal(pixel);
 }
 
-// Evaluates one line of the ball, given as (x, y, half length, weight). Returns the weight of its open part, the weight of the
-// whole line above the tangent plane, and how certain it is that the surface seen there has nothing to do with the ball: 0
-// where that surface is no more than one radius in front of the point, rising to 1 where it is two radii in front.
-vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 plane, vec4 around, float w, float depth, float radius, float thick)
+// Evaluates one line of the ball, given as (x, y, half length, weight). Returns the weight of its covered part, the weight of the
+// whole line above the tangent plane, and for paired samples how certain it is that the surface seen there has nothing to do with
+// the ball: 0 where that surface is no more than one radius in front of the point, rising to 1 where it is two radii in front.
+// slack: nookSlack.
+vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec4 plane, vec4 around, float depth, float radius, float slack, float thick)
 {
 	vec2 across = nookAcross(around, vec2(line.x, line.y), scale);
-	float end = line.z;
-	float slack = 0.0f;
-	end = clamp(nookPlaneRise(plane, across, w / radius, 0.0f), -line.z, line.z);
-	slack = nookSlack(depth, radius) / radius;
-	float front = (nookDepth(nookThere(pixel, across)) - depth) / radius + slack;
-	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim of the ball has no length and no weight
-	float whole = nookAlong(line.z, end);
-	float open = nookOpen(line.z, end, whole, front, thick / radius);
-	return vec3(share * open, share * whole, clamp(-1.0f - front, 0.0f, 1.0f));
+	float share = 0.5f / max(line.z * radius, 1e-20f); // a line on the rim of the ball has no length and no weight
+	float end = 1.0f;
+	float away = nookDepth(nookThere(pixel, across)) - depth;
+	end = clamp(0.5f + share * nookPlaneRise(plane, across, 0.0f), 0.0f, 1.0f);
+	away += slack;
+	float front = 0.5f + share * away;
+	float back = 1.0f;
+	float missing = 0.0f;
+	return vec3(line.w * nookCoveredShare(end, front, back), line.w * nookAlong(end), missing);
 }
 
 // Visibility for one radius (VO 4, 4.1, 4.2 and 4.4). With the normal, samples end at the tangent plane, and the open part is
 // divided by the part above the plane. Without it, an open surface that faces the camera reads 1/2. Paired samples: 2i and 2i + 1
 // lie on opposite sides.
-float nookVoIn(ivec2 pixel, vec3 n, vec3 plane, vec4 around, int row, vec2 metre, float depth, float radius, float thick)
+float nookVoIn(ivec2 pixel, vec3 n, vec4 plane, vec4 around, int row, vec2 metre, float depth, float radius, float thick)
 {
-	float w = nook.w_slope * depth + nook.w_start;
 	vec2 scale = metre * radius;
 	float pixels = max(abs(scale.x), abs(scale.y));
+	float flat_variance = 0.0f;
 	if (pixels < 0.5f)
 	{
 		return 1.0f; // every sample falls on the pixel itself
 	}
 	int count = nookCount(pixels);
-	float open = 0.0f;
+	float slack = nookSlack(depth, radius);
+	float covered = 0.0f;
 	float whole = 0.0f;
 	vec3 own = vec3(0.0f, 0.0f, 0.0f);
 	vec3 before = vec3(0.0f, 0.0f, 0.0f);
 	for (int i = 0; i < count; ++i)
 	{
-		own = nookVoLineAt(pixel, nookVoLineSample(row, i), scale, plane, around, w, depth, radius, thick);
-		open += own.x;
+		own = nookVoLineAt(pixel, nookVoLineSample(row, i), scale, plane, around, depth, radius, slack, thick);
+		covered += own.x;
 		whole += own.y;
 	}
-	if (whole > 0.0f)
-	{
-		return clamp(open / whole, 0.0f, 1.0f); // rounding may exceed the range
-	}
-	return 1.0f; // all samples lie where the falloff is 0
+	return clamp(1.0f - covered / max(whole, 1e-20f), 0.0f, 1.0f); // 1 where the falloff is 0 at all samples
 }
 
 // Visibility of a pixel.
@@ -306,7 +302,7 @@ float nookVo(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	vec3 plane = nookPlane(pixel, n);
+	vec4 plane = nookPlane(pixel, n, nook.w_slope * depth + nook.w_start);
 	vec4 around = nookAround(pixel);
 	int row = nookVoLineVariant(pixel);
 	vec2 metre = nookScale(depth);

@@ -91,11 +91,15 @@ TEST_CASE("shade: the open part of a line, with falloff and thickness, is its in
 		const bool quadratic = i % 4 < 2;
 		kernels.nook.quadratic = quadratic ? 1 : 0;
 		kernels.nook.thick = thick > 0.0 ? 1 : 0;
-		const float whole = kernels.nookAlong(static_cast<float>(reach), static_cast<float>(end));
-		const float open = kernels.nookOpen(static_cast<float>(reach), static_cast<float>(end), whole, static_cast<float>(front),
-											static_cast<float>(thick));
+		const auto place = [reach](double along)
+		{
+			return static_cast<float>(0.5 + 0.5 * along / reach);
+		};
+		const float covered = kernels.nookCoveredShare(place(end), place(front), thick > 0.0 ? place(front + thick) : 1.0F);
+		const double open =
+			static_cast<double>(kernels.nookAlong(place(end)) - covered) * openBySteps(reach, reach, reach, 0.0, quadratic);
 		CAPTURE(reach, end, front, thick, quadratic);
-		CHECK(static_cast<double>(open) == Approx(openBySteps(reach, end, front, thick, quadratic)).margin(3e-4));
+		CHECK(open == Approx(openBySteps(reach, end, front, thick, quadratic)).margin(3e-4));
 	}
 }
 
@@ -116,19 +120,17 @@ TEST_CASE("shade: the ramp of an area is the mean over its depths, also of a sin
 		const float depth = 20.0F;
 		const float even = kernels.nookEven(depth + static_cast<float>(front));
 		const float spread = (i % 5 == 0 ? 1e-5F : static_cast<float>(random.uniform())) * (perspective ? 1.0F / 400.0F : 1.0F);
+		const float share = static_cast<float>(0.5 / reach);
+		const float place = static_cast<float>(0.5 + 0.5 * end / reach);
 		double mean = 0.0;
 		for (int k = 0; k < 400; ++k)
 		{
 			const float there = kernels.nookUneven(even + spread * static_cast<float>(2.0 * (k + 0.5) / 400.0 - 1.0));
-			const float whole = kernels.nookAlong(static_cast<float>(reach), static_cast<float>(end));
-			mean += static_cast<double>(
-						kernels.nookOpen(static_cast<float>(reach), static_cast<float>(end), whole, there - depth, 0.0F)) /
-					400.0;
+			mean += static_cast<double>(kernels.nookCoveredShare(place, 0.5F + share * (there - depth), 1.0F)) / 400.0;
 		}
-		const float open =
-			kernels.nookOpenRamp(static_cast<float>(reach), static_cast<float>(end), even, spread, depth, 1.0F, 0.0F);
+		const float covered = kernels.nookCoveredRamp(place, kernels.nookRamp(even, spread, depth, share));
 		CAPTURE(reach, end, front, spread, quadratic, perspective);
-		CHECK(static_cast<double>(open) == Approx(mean).margin(3e-3));
+		CHECK(static_cast<double>(covered) == Approx(mean).margin(3e-3));
 	}
 }
 

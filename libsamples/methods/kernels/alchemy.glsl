@@ -11,8 +11,8 @@ int nookAlchemyLevel(vec4 point, float pixels)
 
 // Visibility of a pixel: ALC eq. 10 with lengths in radii, so that the picture does not depend on the unit of length. With the
 // radius r, the paper's sigma is sigma * r here, its epsilon epsilon * r^2, its beta beta. Samples are (x, y, unused, weight),
-// uniform on the disk. Emitted with --cut, surfaces farther away than the radius do not count (H in eq. 9).
-// The rounding of depths and normals is subtracted from v.n together with beta.
+// uniform on the disk, with a sum of weights of 1. Emitted with --cut, surfaces farther away than the radius do not count (H in
+// eq. 9). The rounding of depths and normals is subtracted from v.n together with beta, for normals as if v were longer by epsilon.
 float nookAlchemy(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -21,11 +21,16 @@ float nookAlchemy(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = nookRadius(nook.radius, depth);
-	vec2 scale = nookScale(depth) * radius;
+	vec2 texel = nookTexel();
+	vec2 step_of = texel * (nook.w_slope * depth + nook.w_start); // size of a pixel at this depth
+	vec2 metre = vec2(1.0f / step_of.x, -1.0f / step_of.y);
+	float radius = nookRadiusOf(nook.radius, metre);
+	vec2 scale = metre * radius;
+	vec2 turn = texel * nook.w_slope; // by how much the line of sight changes from pixel to pixel
 	vec3 sight = nookSight(pixel);
 	float facing = max(0.0f, dot(n, sight));
-	float bias = (nook.beta * depth + nookSlack(depth, radius) * facing) / radius;
+	float bias = nook.beta * depth + nookSlack(depth, radius) * facing;
+	float least = nook.epsilon * radius * radius;
 	int row = nookVariant(pixel);
 	vec4 around = nookAround(pixel);
 	float pixels = max(abs(scale.x), abs(scale.y));
@@ -35,7 +40,6 @@ float nookAlchemy(ivec2 pixel)
 	for (int i = 0; i < count; ++i)
 	{
 		vec4 point = nookSample(row, i);
-		weights += point.w;
 		vec2 across = nookAcross(around, vec2(point.x, point.y), scale);
 		ivec2 there = nookThere(pixel, across);
 		float surface = 0.0f;
@@ -48,18 +52,26 @@ float nookAlchemy(ivec2 pixel)
 #else
 		surface = nookDepth(there);
 #endif
-		float w = nook.w_slope / radius * surface + nook.w_start / radius;
-		vec3 v = nookOffset(sight, across, (surface - depth) / radius, w);
-		float square = dot(v, v);
-		float height = max(0.0f, dot(v, n) - bias - nook.normal_error * sqrt(square));
-		bool counts = surface < NOOK_SKY;
+		// The surface lies at (x, y, -deeper). Sky does not occlude: it is so far away that it adds nothing.
+		float deeper = min(surface, 1e15f) - depth;
+		float x = across.x * step_of.x + deeper * (across.x * turn.x - sight.x);
+		float y = across.y * step_of.y + deeper * (across.y * turn.y - sight.y);
+		float square = x * x + (y * y + (deeper * deeper + least));
+		float inverse = 1.0f / sqrt(square);
+		float height = x * n.x + y * n.y - (deeper * n.z + bias);
+		float adds = point.w * inverse * clamp(height * inverse - nook.normal_error, 0.0f, 1.0f);
 #if NOOK_CUT
-		counts = counts && square < 1.0f;
+		adds = square < radius * radius + least ? adds : 0.0f;
 #endif
-		float adds = point.w * height / (square + nook.epsilon);
-		sum += counts ? adds : 0.0f;
+		sum += adds;
+#if NOOK_BANDS > 1
+		weights += point.w;
+#endif
 	}
-	float open = pow(max(0.0f, 1.0f - 2.0f * nook.sigma * sum / weights), nook.contrast);
+#if NOOK_BANDS > 1
+	sum /= weights;
+#endif
+	float open = pow(max(0.0f, 1.0f - 2.0f * nook.sigma * radius * sum), nook.contrast);
 #if NOOK_SHAPED
 	open = nookShaped(open);
 #endif

@@ -77,23 +77,23 @@ ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 	return nookInside(nookBeside(pixel, offset, scale));
 }
 
-// The tangent plane of a pixel for nookPlaneRise. z: product of the normal with the line of sight; x, y: its change per pixel to
-// the right and downward, at a clip-space w of 1.
-vec3 nookPlane(ivec2 pixel, vec3 n)
+// The tangent plane of a pixel for nookPlaneRise, with the clip-space w of the pixel. x, y: how far the line of sight one pixel to
+// the right, or downward, lies above the plane at that w; z: product of the normal with the line of sight, above 0 because a normal
+// that is turned away counts as perpendicular to it; w: nook.w_slope / w.
+vec4 nookPlane(ivec2 pixel, vec3 n, float w)
 {
 	vec2 texel = nookTexel();
-	return vec3(n.x * texel.x, n.y * texel.y, dot(n, nookSight(pixel)));
+	return vec4(n.x * texel.x * w, n.y * texel.y * w, max(dot(n, nookSight(pixel)), 1e-5f), nook.w_slope / w);
 }
 
 // Follows another line of sight to the point `height` metres above a tangent plane (nookPlane), and returns how much deeper that
-// point is than the pixel, whose clip-space w is given; NOOK_SKY where the plane does not face the camera there. `across`: offset
-// of the line from the centre of the pixel, in pixels (x to the right, y downward). The result comes from that offset, because a
-// difference of two depths would lose its digits far away.
-float nookPlaneRise(vec3 plane, vec2 across, float w, float height)
+// point is than the pixel; far away where the plane does not face the camera there. `across`: offset of the line from the centre of
+// the pixel, in pixels (x to the right, y downward). The result comes from that offset, because a difference of two depths would
+// lose its digits far away.
+float nookPlaneRise(vec4 plane, vec2 across, float height)
 {
 	float beside = plane.x * across.x + plane.y * across.y;
-	float fall = nook.w_slope * beside - plane.z;
-	return fall > -1e-6f ? NOOK_SKY : (height - w * beside) / fall;
+	return (beside - height) / max(plane.z - plane.w * beside, 1e-6f);
 }
 
 // First and last pixel that hold depth, relative to a pixel.

@@ -31,10 +31,16 @@ float nookSlack(float depth, float radius)
 	return nookDepthError(depth) + nookDepthError(depth + radius);
 }
 
-// The radius that is used at a depth: limited to nook.most_px pixels in the picture, and at least nook.least_px.
+// The radius that is used where a metre has a size of `metre` pixels: limited to nook.most_px pixels in the picture, and at least
+// nook.least_px.
+float nookRadiusOf(float radius, vec2 metre)
+{
+	float pixels = max(abs(metre.x), abs(metre.y));
+	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
+}
+
+// The radius that is used at a depth.
 float nookRadius(float radius, float depth)
 {
-	vec2 scale = nookScale(depth);
-	float pixels = max(abs(scale.x), abs(scale.y));
-	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
+	return nookRadiusOf(radius, nookScale(depth));
 }

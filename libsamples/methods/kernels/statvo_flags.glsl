@@ -10,6 +10,17 @@ float nookStatSlope(float depth, float rise)
 	return rise * (nook.w_slope * nook.w_slope + nook.w_start * nook.w_start) / (near * far);
 }
 
+// How much deeper than a pixel its tangent plane is `across` pixels away (x to the right, y downward); NOOK_SKY where the plane
+// does not face the camera there. w: clip-space w of the pixel.
+float nookStatRise(ivec2 pixel, vec2 across, float w)
+{
+	vec3 n = nookNormal(pixel);
+	vec2 texel = nookTexel();
+	float beside = n.x * texel.x * across.x + n.y * texel.y * across.y;
+	float fall = nook.w_slope * beside - dot(n, nookSight(pixel));
+	return fall > -1e-6f ? NOOK_SKY : -w * beside / fall;
+}
+
 // From a pixel to its neighbour: the smallest slope as x and the smallest negated slope as y, of the surface between them
 // and of the tangent plane of the pixel. No bound where both pixels are in no table; an infinite slope where only one of them
 // is.
@@ -35,7 +46,7 @@ vec2 nookStatStep(ivec2 pixel, ivec2 there)
 #if NOOK_USE_NORMAL
 	vec2 across = vec2(float(there.x - pixel.x), float(there.y - pixel.y));
 	float w = nook.w_slope * depth + nook.w_start;
-	float rise = nookPlaneRise(nookPlane(pixel, nookNormal(pixel)), across, w, 0.0f);
+	float rise = nookStatRise(pixel, across, w);
 	if (rise >= NOOK_SKY || nook.w_slope * (depth + rise) + nook.w_start <= 0.0f)
 	{
 		return vec2(-NOOK_SKY, -NOOK_SKY);

@@ -14,15 +14,10 @@ float nookEven(float depth)
 	return (nook.w_start * depth - nook.w_slope) / (nook.w_slope * depth + nook.w_start);
 }
 
-// The inverse of nookEven; NOOK_SKY at infinity and beyond.
+// The inverse of nookEven; very far away at infinity and beyond.
 float nookUneven(float even)
 {
-	float below = nook.w_start - even * nook.w_slope;
-	if (below <= 0.0f)
-	{
-		return NOOK_SKY;
-	}
-	return (nook.w_slope + even * nook.w_start) / below;
+	return (nook.w_slope + even * nook.w_start) / max(nook.w_start - even * nook.w_slope, 1e-20f);
 }
 
 // Merges two sets of depths, each given as (mean, variance, pixels with a surface, pixels).
@@ -66,22 +61,32 @@ vec4 nookMoments(ivec2 texel)
 	return nookJoined(upper, lower);
 }
 
-// Mean of the open part of a line over surfaces that are spread evenly from even - spread to even + spread, in the measure of
-// nookEven (the ramp of VO 4.2); two points of Gauss quadrature. `back`: metres by which the surfaces are moved away, to find
-// where they end.
-float nookOpenRamp(float reach, float end, float even, float spread, float depth, float radius, float back)
+// Surfaces along a line that is 1 / share metres long, spread evenly in the measure of nookEven from even - spread to even + spread
+// (the ramp of VO 4.2). x: place of the mean; y, z: the first and the last surface lie at x - y / (1 + z) and x + y / (1 - z).
+vec3 nookRamp(float even, float spread, float depth, float share)
 {
-	float first = clamp((nookUneven(even - spread) + back - depth) / radius, -reach, end);
-	float last = clamp((nookUneven(even + spread) + back - depth) / radius, -reach, end);
-	float middle = 0.5f * (first + last);
-	float offset = 0.28867513f * (last - first);
-	float low = clamp(0.5f + 0.5f * (even - nookEven(depth + radius * (middle - offset) - back)) / spread, 0.0f, 1.0f);
-	float high = clamp(0.5f + 0.5f * (even - nookEven(depth + radius * (middle + offset) - back)) / spread, 0.0f, 1.0f);
+	float surface = nookUneven(even);
+	float w = nook.w_slope * surface + nook.w_start;
+	float per_w = spread * w / (nook.w_slope * nook.w_slope + nook.w_start * nook.w_start); // depth per w, near the mean
+	return vec3(0.5f + share * (surface - depth), share * per_w * w, nook.w_slope * per_w);
+}
+
+// Mean over the surfaces of a ramp of the covered share of a line that ends at `end`; two points of Gauss quadrature.
+float nookCoveredRamp(float end, vec3 ramp)
+{
+	float first = clamp(ramp.x - ramp.y / (1.0f + ramp.z), 0.0f, end);
+	float last = clamp(ramp.x + ramp.y / max(1.0f - ramp.z, 1e-6f), 0.0f, end);
+	float width = last - first;
+	float low = first + 0.21132487f * width;
+	float high = first + 0.78867513f * width;
+	// Share of the surfaces in front of a place.
+	float before_low = clamp(0.5f + 0.5f * (low - ramp.x) / (ramp.y + ramp.z * (low - ramp.x)), 0.0f, 1.0f);
+	float before_high = clamp(0.5f + 0.5f * (high - ramp.x) / (ramp.y + ramp.z * (high - ramp.x)), 0.0f, 1.0f);
 #if NOOK_QUADRATIC
-	low *= reach * reach - (middle - offset) * (middle - offset);
-	high *= reach * reach - (middle + offset) * (middle + offset);
+	before_low *= 6.0f * low * (1.0f - low);
+	before_high *= 6.0f * high * (1.0f - high);
 #endif
-	return nookAlong(reach, first) + 0.5f * (low + high) * (last - first);
+	return nookAlong(end) - nookAlong(last) + 0.5f * width * (before_low + before_high);
 }
 
 // The level of moments that a sample reads, from 1; 0 is the picture itself. Its texels have 0.3 to 0.6 of the side of the
@@ -91,45 +96,54 @@ int nookAreaLevel(float lod, vec4 area)
 	return clamp(int(floor(lod + area.z - 0.75f)), 0, NOOK_LEVELS);
 }
 
-// Evaluates one sample, given as (x, y, log2 of the side of its area in radii, weight). Returns the same three numbers as
-// nookVoLineAt.
-vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 plane, vec4 around, float w, float depth, float radius,
-				  float thick, float lod)
+// Variance of nookEven along a tangent plane within a texel, divided by the texel's number of pixels minus 1.
+float nookFlatVariance(vec4 plane, float depth)
 {
-	float reach = sqrt(max(0.0f, 1.0f - area.x * area.x - area.y * area.y));
+	float w = nook.w_slope * depth + nook.w_start;
+	float steep = (nook.w_slope * nook.w_slope + nook.w_start * nook.w_start) / (plane.z * w * w); // nookEven, per metre of plane
+	return (plane.x * plane.x + plane.y * plane.y) * steep * steep / 12.0f;
+}
+
+// Evaluates one sample, given as (x, y, log2 of the side of its area in radii, weight). Returns the same three numbers as
+// nookVoLineAt. lod: log2 of the radius in pixels; flat_variance: nookFlatVariance.
+vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec4 plane, vec4 around, float depth, float radius, float slack, float thick,
+				  float lod, float flat_variance)
+{
+	float reach = sqrt(max(1e-12f, 1.0f - area.x * area.x - area.y * area.y));
 	ivec2 there = nookThere(pixel, nookAcross(around, vec2(area.x, area.y), scale));
-	int level = nookAreaLevel(lod, area) - 1;
-	if (level < 0)
+	int level = nookAreaLevel(lod, area);
+	if (level == 0)
 	{
-		return nookVoLineAt(pixel, vec4(area.x, area.y, reach, area.w), scale, plane, around, w, depth, radius, thick);
+		return nookVoLineAt(pixel, vec4(area.x, area.y, reach, area.w), scale, plane, around, depth, radius, slack, thick);
 	}
-	int side = 2 << level;
-	ivec2 texel = ivec2(there.x / side, there.y / side);
-	vec4 moments = nookLevel(texel, level);
-	float even = moments.x;
+	ivec2 texel = ivec2(there.x >> level, there.y >> level);
+	vec4 moments = nookLevel(texel, level - 1);
+	float share = 0.5f / (reach * radius);
 	float variance = moments.y;
-	float end = reach;
+	float end = 1.0f;
 #if NOOK_USE_NORMAL
 	// From the centre of the pixel to the centre of those pixels of the texel that hold depth.
-	int x_ends = max(texel.x * side, nook.first.x) + min((texel.x + 1) * side, nook.last.x + 1);
-	int y_ends = max(texel.y * side, nook.first.y) + min((texel.y + 1) * side, nook.last.y + 1);
-	float x = 0.5f * float(x_ends) - 0.5f - float(pixel.x);
-	float y = 0.5f * float(y_ends) - 0.5f - float(pixel.y);
-	end = clamp(nookPlaneRise(plane, vec2(x, y), w / radius, 0.0f), -reach, reach);
+	int beyond = (1 << level) - 1;
+	ivec2 start = ivec2(texel.x << level, texel.y << level);
+	int x_ends = max(start.x, nook.first.x) + min(start.x + beyond, nook.last.x);
+	int y_ends = max(start.y, nook.first.y) + min(start.y + beyond, nook.last.y);
+	vec2 across = vec2(0.5f * float(x_ends) - float(pixel.x), 0.5f * float(y_ends) - float(pixel.y));
+	end = clamp(0.5f + share * nookPlaneRise(plane, across, 0.0f), 0.0f, 1.0f);
 	// Subtracts the variance that a surface along the tangent plane has within the texel: it does not occlude.
-	float steep = (nook.w_slope * nook.w_slope + nook.w_start * nook.w_start) / (max(plane.z, 1e-6f) * w); // nookEven, per pixel
-	variance = max(0.0f, variance - (plane.x * plane.x + plane.y * plane.y) * steep * steep * float(side * side - 1) / 12.0f);
+	variance = max(0.0f, variance - flat_variance * float((1 << (2 * level)) - 1));
 #endif
-	// An even spread with the variance of the texel. The paper spreads one standard deviation to each side, a third of the variance,
-	// which has 2 to 10 % more error.
-	float spread = max(sqrt(3.0f * variance), max(1e-6f * abs(even), 1e-30f)); // the last one for sky alone
-	float whole = nookAlong(reach, end);
-	float open = nookOpenRamp(reach, end, even, spread, depth, radius, 0.0f);
+	// An even spread with the variance of the texel. The paper spreads one standard deviation to each side, a third of the
+	// variance, which has 2 to 10 % more error.
+	float spread = max(sqrt(3.0f * variance), max(1e-6f * abs(moments.x), 1e-30f)); // the last one for sky alone
+	vec3 ramp = nookRamp(moments.x, spread, depth, share);
+	float covered = nookCoveredRamp(end, ramp);
 #if NOOK_THICK
-	open += whole - nookOpenRamp(reach, end, even, spread, depth, radius, thick);
+	covered -= nookCoveredRamp(end, vec3(ramp.x + share * thick, ramp.y, ramp.z));
 #endif
-	open = whole + (open - whole) * moments.z / max(moments.w, 1.0f); // sky is open
-	float share = area.w / max(nookAlong(reach, reach), 1e-20f);
-	float missing = clamp(-1.0f - (nookUneven(even + spread) - depth) / radius, 0.0f, 1.0f);
-	return vec3(share * open, share * whole, missing);
+	float missing = 0.0f;
+#if NOOK_PAIRED
+	missing = clamp(-1.0f - (nookUneven(moments.x + spread) - depth) / radius, 0.0f, 1.0f);
+#endif
+	// Sky is open.
+	return vec3(area.w * covered * moments.z / max(moments.w, 1.0f), area.w * nookAlong(end), missing);
 }

@@ -272,9 +272,7 @@ void addSphere(LevelBuilder& builder, glm::dvec3 centre, double radius, int segm
 		const SinCos at = sinCosOf(kPi * i / rings);
 		profile.emplace_back(i == 0 || i == rings ? 0.0 : radius * at.sin, -radius * at.cos);
 	}
-	Frame frame;
-	frame.at = centre;
-	addLathe(builder, frame, profile, segments);
+	addLathe(builder, frameAt(centre), profile, segments);
 }
 
 void addTube(LevelBuilder& builder, std::span<const glm::dvec3> points, std::span<const double> radii, int segments)

@@ -9,7 +9,6 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>

@@ -2,17 +2,13 @@
 #include "scene/gltf_file.h"
 
 #include "core/base64.h"
-#include "core/error.h"
 #include "core/file.h"
-#include "scene/load_parts.h"
+#include "core/words.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <string_view>
-#include <utility>
 
 namespace nook
 {
@@ -125,11 +121,6 @@ void checkText(const std::string& text, const std::string& path)
 		refuseFile(path, "JSON: found " + std::to_string(values) + " values, expected at most " + std::to_string(kMost));
 	}
 }
-
-} // namespace
-
-namespace
-{
 
 void parseText(GltfFile& file)
 {
@@ -377,8 +368,7 @@ private:
 		const uint64_t size = regular ? std::filesystem::file_size(path, failed) : 0;
 		if (!regular || failed)
 		{
-			throw Error(ExitCode::file,
-						m_file.path + ": " + item.element + ": found no file " + path + ", expected the level's data");
+			refuseInput(m_file.path + ": " + item.element, "no file " + path, "the level's data", ExitCode::file);
 		}
 		checkInside(m_file.path, item.element + ".uri", path, m_file.settings);
 		addFile(m_file.files, path);
@@ -480,34 +470,30 @@ private:
 
 	void primitive(const JsonValue& item)
 	{
-		const std::optional<uint64_t> mode = item.whole("mode", 6);
-		static_cast<void>(mode);
+		static_cast<void>(item.whole("mode", 6));
 		item.index("material", m_root.count("materials"));
 		const JsonValue attributes = item.objectNeeded("attributes");
 		if (attributes.has("POSITION"))
 		{
 			const Accessor& positions = attribute(attributes, "POSITION", "VEC3");
 			m_used += (item.has("indices") ? 0 : positions.count) + item.count("targets") * positions.count;
-			for (const auto& [name, types] : {std::pair{"NORMAL", "VEC3"},
-											  {"TANGENT", "VEC4"},
-											  {"TEXCOORD_0", "VEC2"},
-											  {"TEXCOORD_1", "VEC2"},
-											  {"TEXCOORD_2", "VEC2"},
-											  {"TEXCOORD_3", "VEC2"},
-											  {"TEXCOORD_4", "VEC2"},
-											  {"TEXCOORD_5", "VEC2"},
-											  {"TEXCOORD_6", "VEC2"},
-											  {"TEXCOORD_7", "VEC2"},
-											  {"COLOR_0", "VEC3 VEC4"},
-											  {"JOINTS_0", "VEC4"},
-											  {"WEIGHTS_0", "VEC4"}})
+			const auto check = [&](const std::string& name, std::string_view types)
 			{
 				if (attributes.has(name) && attribute(attributes, name, types).count != positions.count)
 				{
 					attributes.fail(name, std::to_string(attribute(attributes, name, types).count) + " values",
 									std::to_string(positions.count) + ", as many as positions");
 				}
+			};
+			check("NORMAL", "VEC3");
+			check("TANGENT", "VEC4");
+			for (char set = '0'; set < '8'; ++set)
+			{
+				check(std::string("TEXCOORD_") + set, "VEC2");
 			}
+			check("COLOR_0", "VEC3 VEC4");
+			check("JOINTS_0", "VEC4");
+			check("WEIGHTS_0", "VEC4");
 		}
 		if (item.has("indices"))
 		{

@@ -2,7 +2,6 @@
 #include "scene/sample_set.h"
 
 #include "core/math.h"
-#include "core/random.h"
 #include "pattern/methods.h"
 
 #include <glm/geometric.hpp>

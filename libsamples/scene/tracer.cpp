@@ -24,8 +24,6 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <string>
-#include <vector>
 
 namespace nook
 {

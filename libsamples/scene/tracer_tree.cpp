@@ -2,21 +2,17 @@
 // Builds Embree's tree from a level's triangles and filters its hits. See tracer.cpp for how rounding is kept from deciding.
 #include "scene/tracer_tree.h"
 
-#include "core/error.h"
 #include "core/parallel.h"
 #include "core/round.h"
 #include "core/text.h"
+#include "core/words.h"
 #include "scene/ray_triangle.h"
-#include "scene/tracer.h"
-
-#include <glm/common.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
-#include <string>
 #include <string_view>
 
 namespace nook
@@ -257,7 +253,7 @@ RTCDevice newEmbreeDevice()
 		RTCDevice device = rtcNewDevice("");
 		if (device == nullptr)
 		{
-			throw Error(ExitCode::runtime, "Embree: found no device, expected a processor with SSE2");
+			refuseInput("Embree", "no device", "a processor with SSE2", ExitCode::runtime);
 		}
 		return device;
 	}

@@ -158,14 +158,4 @@ using ReadRow = std::function<bool(ChannelPlace place, std::vector<uint8_t>& val
 std::optional<AlphaImage> readAlpha(const PictureSize& size, const EncodedAlpha& picture, std::size_t max_texels,
 									const ReadRow& read);
 
-inline uint64_t littleEndian(std::string_view bytes, std::size_t at, std::size_t size)
-{
-	uint64_t number = 0;
-	for (std::size_t i = 0; i < size; ++i)
-	{
-		number |= uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8U * i);
-	}
-	return number;
-}
-
 } // namespace nook

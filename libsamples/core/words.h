@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lower case, lists for messages, and errors of input.
+// Helpers of those who read files: lower case, numbers of bytes, lists for messages, errors.
 #pragma once
 
 #include "core/error.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,17 @@ inline std::string lowered(std::string_view text)
 	std::string lower(text);
 	std::transform(lower.begin(), lower.end(), lower.begin(), lowerCase);
 	return lower;
+}
+
+// An unsigned number of `size` bytes.
+inline uint64_t littleEndian(std::string_view bytes, std::size_t at, std::size_t size)
+{
+	uint64_t number = 0;
+	for (std::size_t i = 0; i < size; ++i)
+	{
+		number |= uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8U * i);
+	}
+	return number;
 }
 
 // The items with commas between them.

@@ -83,19 +83,22 @@ Choice chosen(const Image& image, const std::string& path, const std::string& wa
 				"visibility, a single one, Y, or R, G, B that are all gray (channel picks one)");
 }
 
+std::string pixelText(const Image& image, std::size_t pixel)
+{
+	const auto width = static_cast<std::size_t>(image.width_px);
+	return ", pixel " + std::to_string(pixel % width) + "," + std::to_string(pixel / width);
+}
+
 std::vector<float> finiteValues(const Image& image, const std::string& path, const Choice& choice)
 {
-	const std::size_t pixels = image.values.size() / image.channels.size();
-	std::vector<float> values(pixels);
-	for (std::size_t i = 0; i < pixels; ++i)
+	std::vector<float> values(image.values.size() / image.channels.size());
+	for (std::size_t i = 0; i < values.size(); ++i)
 	{
 		values[i] = image.at(i, choice.index);
 		if (!std::isfinite(values[i]))
 		{
-			const auto width = static_cast<std::size_t>(image.width_px);
-			throw Error(ExitCode::invalid_input, path + ": channel " + choice.name + ", pixel " + std::to_string(i % width) + "," +
-													 std::to_string(i / width) + ": found " +
-													 (std::isnan(values[i]) ? "NaN" : "infinity") + ", expected a finite number");
+			refuseInput(path + ": channel " + choice.name + pixelText(image, i), std::isnan(values[i]) ? "NaN" : "infinity",
+						"a finite number");
 		}
 	}
 	return values;
@@ -149,10 +152,7 @@ BentImage bentOf(const Image& image, const std::string& path)
 			const double length = glm::length(way);
 			if (!std::isfinite(length))
 			{
-				const auto width = static_cast<std::size_t>(image.width_px);
-				refuseInput(path + ": channels " + name + ".X to Z, pixel " + std::to_string(i % width) + "," +
-								std::to_string(i / width),
-							"no direction", "finite numbers");
+				refuseInput(path + ": channels " + name + ".X to Z" + pixelText(image, i), "no direction", "finite numbers");
 			}
 			result.bent.push_back(length > 0.0 ? way / length : way);
 		}

@@ -626,17 +626,17 @@ Verdict verdictOf(const Tracer& tracer, glm::dvec3 from, glm::dvec3 way, double 
 
 const LevelCamera& cameraNamed(const Level& level, std::string_view name)
 {
-	std::string listed;
+	std::vector<std::string> names;
 	for (const LevelCamera& camera : level.cameras)
 	{
 		if (camera.name == name)
 		{
 			return camera;
 		}
-		listed += (listed.empty() ? "" : ", ") + camera.name;
+		names.push_back(camera.name);
 	}
-	throw Error(ExitCode::usage, "camera: found '" + std::string(name) + "', expected " +
-									 (listed.empty() ? "auto:K, as " + level.name + " has no cameras" : listed + " or auto:K"));
+	refuseInput("camera", "'" + std::string(name) + "'",
+				names.empty() ? "auto:K, as " + level.name + " has no cameras" : commaList(names) + " or auto:K", ExitCode::usage);
 }
 
 std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const RunSettings& run)

@@ -24,42 +24,32 @@ constexpr uint32_t kBinChunk = 0x004E4942;  // "BIN\0"
 	throw Error(ExitCode::invalid_input, path + ": " + what);
 }
 
-uint32_t wordAt(const std::string& bytes, std::size_t at)
-{
-	uint32_t word = 0;
-	for (std::size_t i = 0; i < 4; ++i)
-	{
-		word |= uint32_t{static_cast<unsigned char>(bytes[at + i])} << (8U * i);
-	}
-	return word;
-}
-
 // Splits a .glb into its chunks and returns the JSON text.
 std::string takeChunks(std::string bytes, GltfFile& file)
 {
-	if (bytes.size() < 20 || wordAt(bytes, 0) != kGlbMagic)
+	if (bytes.size() < 20 || littleEndian(bytes, 0, 4) != kGlbMagic)
 	{
 		refuseFile(file.path,
 				   "header: found " + std::to_string(bytes.size()) + " bytes that are not a binary glTF, expected \"glTF\" first");
 	}
-	if (wordAt(bytes, 4) != 2)
+	if (littleEndian(bytes, 4, 4) != 2)
 	{
-		refuseFile(file.path, "header: found version " + std::to_string(wordAt(bytes, 4)) + ", expected 2");
+		refuseFile(file.path, "header: found version " + std::to_string(littleEndian(bytes, 4, 4)) + ", expected 2");
 	}
-	if (wordAt(bytes, 8) > bytes.size())
+	if (littleEndian(bytes, 8, 4) > bytes.size())
 	{
-		refuseFile(file.path,
-				   "header: found " + std::to_string(bytes.size()) + " bytes, expected " + std::to_string(wordAt(bytes, 8)));
+		refuseFile(file.path, "header: found " + std::to_string(bytes.size()) + " bytes, expected " +
+								  std::to_string(littleEndian(bytes, 8, 4)));
 	}
-	const std::size_t end = wordAt(bytes, 8);
+	const std::size_t end = littleEndian(bytes, 8, 4);
 	std::string json;
 	std::size_t chunk_at = 0;
 	std::size_t chunk_size = 0;
 	std::size_t at = 12;
 	for (int chunk = 0; at + 8 <= end; ++chunk)
 	{
-		const std::size_t size = wordAt(bytes, at);
-		const uint32_t kind = wordAt(bytes, at + 4);
+		const std::size_t size = littleEndian(bytes, at, 4);
+		const uint64_t kind = littleEndian(bytes, at + 4, 4);
 		at += 8;
 		if (size > end - at)
 		{

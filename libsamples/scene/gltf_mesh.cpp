@@ -288,18 +288,13 @@ private:
 			for (const Primitive& primitive : mesh)
 			{
 				const std::size_t each = primitive.mode == kTriangles ? 3 : 1;
-				if (primitive.indices == nullptr || primitive.positions == nullptr || primitive.mode < kTriangles)
+				const bool is_asked =
+					primitive.indices != nullptr && primitive.positions != nullptr && primitive.mode >= kTriangles;
+				for (std::size_t i = 0; is_asked && i + each <= primitive.count(); i += each)
 				{
-					continue;
-				}
-				for (std::size_t i = 0; i + each <= primitive.count(); i += each)
-				{
-					bool inside = true;
-					for (std::size_t k = i; k < i + each; ++k)
-					{
-						inside = inside && primitive.vertexAt(k) < primitive.positions->count();
-					}
-					if (!inside)
+					const uint64_t greatest =
+						std::max({primitive.vertexAt(i), primitive.vertexAt(i + each / 2), primitive.vertexAt(i + each - 1)});
+					if (greatest >= primitive.positions->count())
 					{
 						tally.add(primitive.where + (each == 3 ? ", triangle " : ", index ") + std::to_string(i / each));
 					}

@@ -149,18 +149,17 @@ Level readNamed(const std::string& name, const LoadSettings& settings, std::vect
 
 void checkCleaned(const LoadedLevel& loaded, const std::string& name, const LoadSettings& settings)
 {
+	const std::vector<Finding>& findings = loaded.diagnosis.findings;
 	if (loaded.level.triangles.empty())
 	{
-		const Finding& first = loaded.diagnosis.findings.front();
-		refuseInput(name + ": " + first.first, first.id + " and no triangle that is left", "a surface");
+		refuseInput(name + ": " + findings.front().first, findings.front().id + " and no triangle that is left", "a surface");
 	}
-	if (settings.strict && !loaded.diagnosis.findings.empty())
+	if (settings.strict && !findings.empty())
 	{
-		const Finding& first = loaded.diagnosis.findings.front();
-		const std::size_t more = loaded.diagnosis.findings.size() - 1;
-		throw Error(ExitCode::invalid_input,
-					name + ": " + first.first + ": found " + first.id + " (" + std::to_string(first.count) + ")" +
-						(more == 0 ? "" : " and " + std::to_string(more) + " more kinds of findings") + ", expected none (strict)");
+		const std::string more =
+			findings.size() == 1 ? "" : " and " + std::to_string(findings.size() - 1) + " more kinds of findings";
+		refuseInput(name + ": " + findings.front().first,
+					findings.front().id + " (" + std::to_string(findings.front().count) + ")" + more, "none (strict)");
 	}
 }
 

@@ -236,23 +236,11 @@ private:
 			int two_sided = 0;
 			material.Get(AI_MATKEY_TWOSIDED, two_sided);
 			m_to.value(two_sided);
-			texture(material, aiTextureType_OPACITY);
-			texture(material, aiTextureType_DIFFUSE);
+			// Only OBJ has pictures of opacity, which readMtl() reads.
+			send({}, {}, glm::dmat3(1.0), {});
+			send(material.GetTexture(aiTextureType_DIFFUSE, 0, &text) == AI_SUCCESS ? textOf(text) : std::string(), {},
+				 glm::dmat3(1.0), {});
 		}
-	}
-
-	// Sends name and wrap modes.
-	void texture(const aiMaterial& material, aiTextureType type)
-	{
-		aiString path;
-		std::array<aiTextureMapMode, 2> wrap{aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
-		const bool found = material.GetTexture(type, 0, &path, nullptr, nullptr, nullptr, nullptr, wrap.data()) == AI_SUCCESS;
-		const auto wrapOf = [](aiTextureMapMode mode)
-		{
-			return mode == aiTextureMapMode_Mirror ? Wrap::mirror : mode == aiTextureMapMode_Clamp ? Wrap::clamp : Wrap::repeat;
-		};
-		send(found ? textOf(path) : std::string(), MaskUse{wrapOf(wrap[0]), wrapOf(wrap[1]), MaskChannel::alpha_or_first},
-			 glm::dmat3(1.0), {});
 	}
 
 	// Sends every node's meshes, parents first, children in order.

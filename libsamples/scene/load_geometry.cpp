@@ -255,15 +255,16 @@ void checkThere(const LoadSettings& settings, const LevelSource& source, const s
 {
 	for (const MaskSource& mask : source.masks)
 	{
+		if (mask.path.empty())
+		{
+			continue;
+		}
 		std::error_code failed;
-		if (!mask.path.empty() && !std::filesystem::is_regular_file(mask.path, failed))
+		if (!std::filesystem::is_regular_file(mask.path, failed))
 		{
 			refuseInput(level_path, "no file " + mask.path, "the mask of a material", ExitCode::file);
 		}
-		if (!mask.path.empty())
-		{
-			checkInside(level_path, "mask '" + mask.name + "'", mask.path, settings);
-		}
+		checkInside(level_path, "mask '" + mask.name + "'", mask.path, settings);
 	}
 }
 

@@ -468,12 +468,7 @@ constexpr std::size_t kHead = 84; // bytes before the first triangle
 // Size of a binary file with this head.
 uint64_t bytesNeeded(const std::string& bytes)
 {
-	uint64_t count = 0;
-	for (std::size_t i = 0; i < 4; ++i)
-	{
-		count |= uint64_t{static_cast<unsigned char>(bytes[80 + i])} << (8U * i);
-	}
-	return kHead + 50 * count;
+	return kHead + 50 * littleEndian(bytes, 80, 4);
 }
 
 class TextReader

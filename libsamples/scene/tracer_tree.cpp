@@ -259,15 +259,15 @@ RTCDevice newEmbreeDevice()
 	}
 	// Embree itself ignores unknown names.
 	constexpr std::array<std::string_view, 5> kSets{"sse2", "sse4.2", "avx", "avx2", "avx512"};
-	const std::string what = "NOOK_TEST_ISA: found '" + oneLine(isa) + "', expected ";
+	const std::string found = "'" + oneLine(isa) + "'";
 	if (std::find(kSets.begin(), kSets.end(), isa) == kSets.end())
 	{
-		throw Error(ExitCode::usage, what + "sse2, sse4.2, avx, avx2 or avx512");
+		refuseInput("NOOK_TEST_ISA", found, "sse2, sse4.2, avx, avx2 or avx512", ExitCode::usage);
 	}
 	RTCDevice device = rtcNewDevice((std::string("isa=") + isa).c_str());
 	if (device == nullptr)
 	{
-		throw Error(ExitCode::runtime, what + "instructions that Embree and this processor have");
+		refuseInput("NOOK_TEST_ISA", found, "instructions that Embree and this processor have", ExitCode::runtime);
 	}
 	return device;
 }

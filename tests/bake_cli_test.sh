@@ -230,6 +230,13 @@ works '' bake kept_5.gltf --radius 1 --rays 32 --to color-alpha -o kept_6.gltf -
 works '' bake kept_6.gltf --radius 1 --rays 32 -o kept_6.gltf --json s.json
 checks=$((checks + 1))
 sed 's/kept_[26].gltf/kept_two.gltf/' kept_6.gltf | cmp -s - kept_5.gltf || problem "baking again: found another file than baking once"
+# Edited by hand after the bake: its undo may mean other items.
+works '' bake kept_two.gltf --radius 1 --rays 32 --to color -o kept_8.gltf --json s.json
+sed 's/"name": "low"/"name": "lower"/' kept_8.gltf >kept_other.gltf
+fails 3 'kept_other.gltf: COLOR_0: found an earlier bake in a file that was changed since' bake kept_other.gltf --radius 1 --to color -o b.gltf
+sed 's/"name": "low"/"name": "lower"/' kept_5.gltf >kept_other.gltf
+works '' bake kept_other.gltf --radius 1 --rays 32 -o kept_8.gltf --json s.json
+works '' info kept_8.gltf
 for to in color color-alpha texcoord:1 texcoord:3 custom:AO visibility; do
 	works "\"to\": \"$to\"" bake kept_two.gltf --radius 1 --rays 32 --to $to -o kept_7.gltf --json -
 	additions kept_two.gltf kept_7.gltf COLOR_0

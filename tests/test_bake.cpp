@@ -5,7 +5,6 @@
 
 #include "bake/bake.h"
 #include "bake/probes.h"
-#include "bake/subdivide.h"
 #include "bake/surface_samples.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -92,7 +91,7 @@ TEST_CASE("bake: the fit finds a linear function again, and keeps to values from
 			const double x = (1.0 - b - c) * level.positions[t.x].x + b * level.positions[t.y].x + c * level.positions[t.z].x;
 			sample.visibility = static_cast<float>(std::clamp(0.2 + slope * x, 0.0, 1.0));
 		}
-		return fitValues(level, areas, unknowns, samples, 1).values;
+		return fitValues(level, areas, unknowns, samples, BakeSettings()).values;
 	};
 	const std::vector<float> linear = fitted(0.5);
 	const std::vector<float> steep = fitted(4.0); // 1 from x = 0.2 on: without bounds the values beyond would overshoot

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/bake.h"
 
-#include "bake/subdivide.h"
 #include "bake/surface_samples.h"
 #include "core/math.h"
 #include "core/parallel.h"
@@ -17,8 +16,8 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
-#include <vector>
 
 namespace nook
 {
@@ -55,13 +54,8 @@ VertexBake atPoints(const Tracer& tracer, const Unknowns& unknowns, const BakeSe
 {
 	const Level& level = tracer.level();
 	const std::vector<ReferencePoint> points = pointsOf(level, unknowns);
-	ReferenceSettings how;
+	ReferenceSettings how = raysOf(settings, settings.rays, settings.seed);
 	how.measure = settings.bent ? ReferenceMeasure::bent : ReferenceMeasure::obscurance;
-	how.radius_m = settings.radius_m;
-	how.falloff = settings.falloff;
-	how.falloff_u_m = settings.falloff_u_m;
-	how.rays = settings.rays;
-	how.seed = settings.seed;
 	const std::vector<ReferenceValue> values = referenceAtPoints(tracer, points, how, run);
 	VertexBake bake;
 	FittedValues at_points;
@@ -108,12 +102,11 @@ VertexBake overSurface(const Tracer& tracer, const Unknowns& unknowns, const Bak
 	std::vector<SurfaceSample> samples = places.all();
 	traceSamples(tracer, level, samples, settings, rays, settings.seed, run, "rays");
 	const ProgressCounter stage(run.progress, "fit");
-	const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings.seed, fitSettingsOf(settings));
+	const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings);
 	VertexBake bake;
 	bake.points = samples.size();
 	bake.rays = samples.size() * static_cast<std::size_t>(rays);
-	bake.buried = buriedOf(samples);
-	bake.shut = shutOf(samples);
+	countUnseen(samples, bake);
 	take(bake, level, unknowns, fitted);
 	return bake;
 }
@@ -125,9 +118,7 @@ constexpr int kNeeded = 7; // tolerates a leak or a flipped sheet; otherwise bac
 template <class Value>
 Value valueAt(const Level& baked, const SurfaceSample& sample, const std::vector<Value>& front, const std::vector<Value>& back)
 {
-	const glm::uvec3 t = baked.triangles[sample.triangle];
-	const std::vector<Value>& values = sample.back && !back.empty() ? back : front;
-	return (1.0F - sample.b - sample.c) * values[t.x] + sample.b * values[t.y] + sample.c * values[t.z];
+	return interpolated(sample.back && !back.empty() ? back : front, baked.triangles[sample.triangle], sample.b, sample.c);
 }
 
 constexpr double kSameDepth = 1e-3; // relative depth: above the precision of 24-bit depth in a level, below visible contact
@@ -135,11 +126,8 @@ constexpr double kSameDepth = 1e-3; // relative depth: above the precision of 24
 // Value of the side that was hit; NaN if a vertex has none.
 float valueOf(const Level& level, const BakedValues& baked, const RayHit& hit)
 {
-	const glm::uvec3 t = level.triangles[hit.triangle];
-	const std::vector<float>& values = hit.front ? baked.front : baked.back;
-	const auto b = static_cast<float>(hit.barycentric.x);
-	const auto c = static_cast<float>(hit.barycentric.y);
-	return (1.0F - b - c) * values[t.x] + b * values[t.y] + c * values[t.z];
+	return interpolated(hit.front ? baked.front : baked.back, level.triangles[hit.triangle], static_cast<float>(hit.barycentric.x),
+						static_cast<float>(hit.barycentric.y));
 }
 
 } // namespace
@@ -164,12 +152,6 @@ std::size_t alignSheets(Level& level, int threads)
 	{
 		return level.material_list[level.materials[t]].two_sided;
 	};
-	const auto areaOf = [&level](std::size_t t) // length is twice the area
-	{
-		const glm::uvec3 corner = level.triangles[t];
-		const glm::dvec3 a = level.positions[corner.x];
-		return glm::cross(level.positions[corner.y] - a, level.positions[corner.z] - a);
-	};
 	if (std::none_of(level.material_list.begin(), level.material_list.end(), [](const auto& one) { return one.two_sided; }))
 	{
 		return 0;
@@ -180,13 +162,13 @@ std::size_t alignSheets(Level& level, int threads)
 	{
 		for (int corner = 0; isSheet(t) && corner < 3; ++corner)
 		{
-			sums[places[level.triangles[t][corner]]] += areaOf(t);
+			sums[places[level.triangles[t][corner]]] += twiceAreaOf(level, t);
 		}
 	}
 	std::size_t turned = 0;
 	for (std::size_t t = 0; t < level.triangles.size(); ++t)
 	{
-		const glm::dvec3 own = isSheet(t) ? areaOf(t) : glm::dvec3(0.0);
+		const glm::dvec3 own = isSheet(t) ? twiceAreaOf(level, t) : glm::dvec3(0.0);
 		bool against = own != glm::dvec3(0.0);
 		for (int corner = 0; against && corner < 3; ++corner)
 		{
@@ -234,12 +216,7 @@ bool isBuried(const Tracer& tracer, glm::dvec3 origin, glm::dvec3 normal)
 		return false;
 	}
 	some(2, kVotes - 2);
-	int sum = 0;
-	for (const int8_t side : sides)
-	{
-		sum += side;
-	}
-	return sum <= -kNeeded;
+	return std::accumulate(sides.begin(), sides.end(), 0) <= -kNeeded;
 }
 
 BakeCheck checkValues(const Tracer& tracer, const Level& baked, const std::function<double(const SurfaceSample&)>& valueOf,

@@ -4,11 +4,12 @@
 // "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields", 2019 (weights that fade probes behind the surface).
 #include "bake/probes.h"
 
+#include "bake/surface_samples.h"
 #include "core/decimal.h"
-#include "core/error.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "core/words.h"
 #include "format/ktx2.h"
 #include "scene/reference.h"
 
@@ -34,8 +35,8 @@ int countAlong(double size_m, double spacing_m)
 	const double count = std::ceil(size_m / spacing_m);
 	if (!(count <= kMostProbesAlong))
 	{
-		throw Error(ExitCode::usage, "probes: found more than " + std::to_string(kMostProbesAlong) +
-										 " probes along an axis of the level, expected at most that");
+		refuseInput("probes", "more than " + std::to_string(kMostProbesAlong) + " probes along an axis of the level",
+					"at most that", ExitCode::usage);
 	}
 	return std::max(1, static_cast<int>(count));
 }
@@ -53,8 +54,8 @@ ProbeGrid placeProbes(const Bounds& bounds, double spacing_m)
 	}
 	if (probes > static_cast<double>(kMostProbes))
 	{
-		throw Error(ExitCode::usage, "probes: found " + std::to_string(static_cast<uint64_t>(probes)) +
-										 " probes in the level, expected at most " + std::to_string(kMostProbes));
+		refuseInput("probes", std::to_string(static_cast<uint64_t>(probes)) + " probes in the level",
+					"at most " + std::to_string(kMostProbes), ExitCode::usage);
 	}
 	grid.texels.assign(static_cast<std::size_t>(probes), {128, 128, 128, 0});
 	return grid;
@@ -73,17 +74,6 @@ uint8_t byteOf(double value)
 	return static_cast<uint8_t>(std::floor(std::clamp(value, 0.0, 255.0) + 0.5));
 }
 
-ReferenceSettings raysOf(const BakeSettings& settings, int rays, uint32_t seed)
-{
-	ReferenceSettings how;
-	how.radius_m = settings.radius_m;
-	how.falloff = settings.falloff;
-	how.falloff_u_m = settings.falloff_u_m;
-	how.rays = rays;
-	how.seed = seed;
-	return how;
-}
-
 // Least-squares fit over six normals along the axes.
 std::array<uint8_t, 4> texelOf(std::span<const ReferenceValue> values)
 {
@@ -97,11 +87,6 @@ std::array<uint8_t, 4> texelOf(std::span<const ReferenceValue> values)
 		return byteOf(255.0 * (0.5 * (values[2 * axis].visibility - values[2 * axis + 1].visibility) + 0.5));
 	};
 	return {slope(0), slope(1), slope(2), byteOf(1.0 + 254.0 * mean)};
-}
-
-std::string listed(glm::dvec3 v)
-{
-	return numberText(v.x) + " " + numberText(v.y) + " " + numberText(v.z);
 }
 
 // A number with a point or an exponent, as GLSL ES requires.
@@ -245,10 +230,11 @@ std::string probesKtx2(const ProbeGrid& grid, std::string_view writer)
 	texture.width = static_cast<uint32_t>(grid.count.x);
 	texture.height = static_cast<uint32_t>(grid.count.y);
 	texture.depth = static_cast<uint32_t>(grid.count.z);
-	texture.notes = {{"KTXwriter", std::string(writer)},
-					 {"Layout", "visibility for the normal n = (255 a - 1) / 254 + dot(rgb - 0.5, n); a = 0: inside matter"},
-					 {"nook:origin_m", listed(grid.origin)},
-					 {"nook:spacing_m", numberText(grid.spacing_m)}};
+	texture.notes = {
+		{"KTXwriter", std::string(writer)},
+		{"Layout", "visibility for the normal n = (255 a - 1) / 254 + dot(rgb - 0.5, n); a = 0: inside matter"},
+		{"nook:origin_m", numberText(grid.origin.x) + " " + numberText(grid.origin.y) + " " + numberText(grid.origin.z)},
+		{"nook:spacing_m", numberText(grid.spacing_m)}};
 	texture.bytes.reserve(4 * grid.texels.size());
 	for (const std::array<uint8_t, 4>& texel : grid.texels)
 	{

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bake/subdivide.h"
+#include "bake/surface_samples.h"
 
 #include "core/random.h"
 
@@ -9,6 +9,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace nook
 {
@@ -23,6 +24,131 @@ uint64_t pairOf(uint32_t a, uint32_t b)
 	return (uint64_t{std::min(a, b)} << 32U) | std::max(a, b);
 }
 
+// Edges of triangles; edges between the same two positions share a number.
+class EdgeMarks
+{
+public:
+	EdgeMarks(const Level& level, const Unknowns& unknowns) : m_level(level)
+	{
+		struct Side
+		{
+			uint64_t places = 0;
+			uint32_t slot = 0; // 3 × triangle + edge
+		};
+		std::vector<Side> sides;
+		sides.reserve(3 * level.triangles.size());
+		for (std::size_t t = 0; t < level.triangles.size(); ++t)
+		{
+			for (int edge = 0; edge < 3; ++edge)
+			{
+				const uint32_t a = unknowns.place_of_vertex[level.triangles[t][edge]];
+				const uint32_t b = unknowns.place_of_vertex[level.triangles[t][(edge + 1) % 3]];
+				sides.push_back({pairOf(a, b), static_cast<uint32_t>(sides.size())});
+			}
+		}
+		std::sort(sides.begin(), sides.end(),
+				  [](const Side& a, const Side& b) { return a.places != b.places ? a.places < b.places : a.slot < b.slot; });
+		m_edge.resize(sides.size());
+		m_triangle.reserve(sides.size());
+		for (std::size_t i = 0; i < sides.size(); ++i)
+		{
+			if (i == 0 || sides[i].places != sides[i - 1].places)
+			{
+				m_first.push_back(i);
+				m_length.push_back(glm::distance(level.positions[sides[i].places >> 32U],
+												 level.positions[static_cast<uint32_t>(sides[i].places)]));
+			}
+			m_edge[sides[i].slot] = static_cast<uint32_t>(m_first.size() - 1);
+			m_triangle.push_back(sides[i].slot / 3);
+		}
+		m_first.push_back(sides.size());
+		m_marked.assign(m_length.size(), 0);
+	}
+
+	// Marks the longest edge of a triangle and those nearly as long, and in every triangle with a marked edge the longest one
+	// (M.-C. Rivara, "Algorithms for Refining Triangular Grids Suitable for Adaptive and Multigrid Techniques", 1984), so that
+	// triangles do not become thin.
+	void mark(std::size_t triangle)
+	{
+		const double longest_m = longest(triangle);
+		for (std::size_t edge = 0; edge < 3; ++edge)
+		{
+			if (m_length[m_edge[3 * triangle + edge]] >= kNearlyAsLong * longest_m)
+			{
+				markEdge(m_edge[3 * triangle + edge]);
+			}
+		}
+		while (!m_todo.empty())
+		{
+			const uint32_t edge = m_todo.back();
+			m_todo.pop_back();
+			for (std::size_t i = m_first[edge]; i < m_first[edge + 1]; ++i)
+			{
+				const std::size_t t = m_triangle[i];
+				const double length_m = longest(t);
+				for (std::size_t k = 0; k < 3; ++k) // the first of equally long edges
+				{
+					if (m_length[m_edge[3 * t + k]] == length_m)
+					{
+						markEdge(m_edge[3 * t + k]);
+						break;
+					}
+				}
+			}
+		}
+	}
+
+	bool isMarked(std::size_t triangle, std::size_t edge) const
+	{
+		return m_marked[m_edge[3 * triangle + edge]] != 0;
+	}
+
+	// Metres.
+	double longest(std::size_t triangle) const
+	{
+		return std::max({m_length[m_edge[3 * triangle]], m_length[m_edge[3 * triangle + 1]], m_length[m_edge[3 * triangle + 2]]});
+	}
+
+	// The number that splitting the marked edges creates.
+	std::size_t newVertices() const
+	{
+		std::vector<uint64_t> pairs;
+		for (std::size_t slot = 0; slot < m_edge.size(); ++slot)
+		{
+			if (m_marked[m_edge[slot]] != 0)
+			{
+				const glm::uvec3 corner = m_level.triangles[slot / 3];
+				pairs.push_back(pairOf(corner[static_cast<int>(slot % 3)], corner[static_cast<int>((slot + 1) % 3)]));
+			}
+		}
+		std::sort(pairs.begin(), pairs.end());
+		return static_cast<std::size_t>(std::unique(pairs.begin(), pairs.end()) - pairs.begin());
+	}
+
+	void clear()
+	{
+		std::fill(m_marked.begin(), m_marked.end(), uint8_t{0});
+	}
+
+private:
+	void markEdge(uint32_t edge)
+	{
+		if (m_marked[edge] == 0)
+		{
+			m_marked[edge] = 1;
+			m_todo.push_back(edge);
+		}
+	}
+
+	const Level& m_level;
+	std::vector<uint32_t> m_edge;     // three per triangle: corners 0 1, 1 2, 2 0
+	std::vector<double> m_length;     // per edge, metres
+	std::vector<std::size_t> m_first; // start of each edge's list in m_triangle
+	std::vector<uint32_t> m_triangle; // triangles with that edge
+	std::vector<uint8_t> m_marked;
+	std::vector<uint32_t> m_todo;
+};
+
 // A vertex of a part: a vertex of the level, and its position in the split triangle (weights of the second and third vertex).
 struct PartCorner
 {
@@ -30,18 +156,6 @@ struct PartCorner
 	glm::dvec2 at{0.0};
 };
 using Part = std::array<PartCorner, 3>;
-
-// Weights of a point in a part; the smallest says how far inside it is.
-glm::dvec3 weightsIn(const Part& part, glm::dvec2 p)
-{
-	const glm::dvec2 u = part[1].at - part[0].at;
-	const glm::dvec2 v = part[2].at - part[0].at;
-	const glm::dvec2 w = p - part[0].at;
-	const double area = u.x * v.y - u.y * v.x;
-	const double b = (w.x * v.y - w.y * v.x) / area;
-	const double c = (u.x * w.y - u.y * w.x) / area;
-	return {1.0 - b - c, b, c};
-}
 
 class Splitter
 {
@@ -151,6 +265,59 @@ private:
 	std::size_t m_first = 0;       // first midpoint
 };
 
+// Splits every triangle with marked edges at their midpoints into two, three or four of the same orientation, material and mesh.
+// Triangles that share an edge share its parts. Samples move to the triangles that contain them.
+void splitMarked(Level& level, std::vector<SurfaceSample>& samples, const EdgeMarks& marks)
+{
+	const Splitter splitter(level, marks);
+	std::vector<glm::uvec3> triangles;
+	std::vector<uint32_t> materials;
+	std::vector<SurfaceSample> moved;
+	moved.reserve(samples.size());
+	std::vector<std::vector<SurfaceSample>> of_part(4);
+	std::size_t next = 0;
+	for (Mesh& mesh : level.meshes)
+	{
+		const std::size_t first = triangles.size();
+		for (std::size_t t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t)
+		{
+			const std::vector<Part> parts = splitter.partsOf(t);
+			for (; next < samples.size() && samples[next].triangle == t; ++next)
+			{
+				std::size_t best = 0;
+				glm::dvec3 weights(-1e300);
+				for (std::size_t i = 0; i < parts.size(); ++i)
+				{
+					const auto& [a, b, c] = parts[i];
+					const glm::dvec3 here = weightsIn(a.at, b.at, c.at, {samples[next].b, samples[next].c});
+					if (std::min({here.x, here.y, here.z}) > std::min({weights.x, weights.y, weights.z}))
+					{
+						best = i;
+						weights = here;
+					}
+				}
+				SurfaceSample sample = samples[next];
+				sample.triangle = static_cast<uint32_t>(triangles.size() + best);
+				sample.b = static_cast<float>(weights.y);
+				sample.c = static_cast<float>(weights.z);
+				of_part[best].push_back(sample);
+			}
+			for (std::size_t i = 0; i < parts.size(); ++i)
+			{
+				triangles.emplace_back(parts[i][0].vertex, parts[i][1].vertex, parts[i][2].vertex);
+				materials.push_back(level.materials[t]);
+				moved.insert(moved.end(), of_part[i].begin(), of_part[i].end());
+				of_part[i].clear();
+			}
+		}
+		mesh.first_triangle = first;
+		mesh.triangle_count = triangles.size() - first;
+	}
+	level.triangles = std::move(triangles);
+	level.materials = std::move(materials);
+	samples = std::move(moved);
+}
+
 constexpr int kMostRounds = 32; // each halves edges: a kilometre becomes a micrometre, and edges stop earlier at the minimum length
 
 // Minimum edge length: contact shadows begin with zero width, so subdivision would never end.
@@ -181,8 +348,7 @@ std::vector<double> errorsOf(const Level& level, const Unknowns& unknowns, std::
 		}
 		const glm::uvec3 t = level.triangles[sample.triangle];
 		const std::vector<uint32_t>& of = sample.back ? unknowns.of_back : unknowns.of_vertex;
-		const float value =
-			(1.0F - sample.b - sample.c) * values[of[t.x]] + sample.b * values[of[t.y]] + sample.c * values[of[t.z]];
+		const float value = interpolated(values, {of[t.x], of[t.y], of[t.z]}, sample.b, sample.c);
 		auto seen = static_cast<double>(sample.visibility);
 		double unsure = static_cast<double>(sample.standard_error) * static_cast<double>(sample.standard_error);
 		if (!unknowns.has_sides && i + 1 < samples.size() && isPair(sample, samples[i + 1]))
@@ -300,168 +466,7 @@ std::size_t topUp(const Tracer& tracer, const Level& level, std::vector<SurfaceS
 	return added.size();
 }
 
-double totalOf(std::span<const double> values)
-{
-	double sum = 0.0;
-	for (const double value : values)
-	{
-		sum += value;
-	}
-	return sum;
-}
-
 } // namespace
-
-EdgeMarks::EdgeMarks(const Level& level, const Unknowns& unknowns) : m_level(level)
-{
-	struct Side
-	{
-		uint64_t places = 0;
-		uint32_t slot = 0; // 3 × triangle + edge
-	};
-	std::vector<Side> sides;
-	sides.reserve(3 * level.triangles.size());
-	for (std::size_t t = 0; t < level.triangles.size(); ++t)
-	{
-		for (int edge = 0; edge < 3; ++edge)
-		{
-			const uint32_t a = unknowns.place_of_vertex[level.triangles[t][edge]];
-			const uint32_t b = unknowns.place_of_vertex[level.triangles[t][(edge + 1) % 3]];
-			sides.push_back({pairOf(a, b), static_cast<uint32_t>(sides.size())});
-		}
-	}
-	std::sort(sides.begin(), sides.end(),
-			  [](const Side& a, const Side& b) { return a.places != b.places ? a.places < b.places : a.slot < b.slot; });
-	m_edge.resize(sides.size());
-	m_triangle.reserve(sides.size());
-	for (std::size_t i = 0; i < sides.size(); ++i)
-	{
-		if (i == 0 || sides[i].places != sides[i - 1].places)
-		{
-			m_first.push_back(i);
-			m_length.push_back(
-				glm::distance(level.positions[sides[i].places >> 32U], level.positions[static_cast<uint32_t>(sides[i].places)]));
-		}
-		m_edge[sides[i].slot] = static_cast<uint32_t>(m_first.size() - 1);
-		m_triangle.push_back(sides[i].slot / 3);
-	}
-	m_first.push_back(sides.size());
-	m_marked.assign(m_length.size(), 0);
-}
-
-double EdgeMarks::longest(std::size_t triangle) const
-{
-	return std::max({m_length[m_edge[3 * triangle]], m_length[m_edge[3 * triangle + 1]], m_length[m_edge[3 * triangle + 2]]});
-}
-
-void EdgeMarks::markEdge(uint32_t edge)
-{
-	if (m_marked[edge] == 0)
-	{
-		m_marked[edge] = 1;
-		m_todo.push_back(edge);
-	}
-}
-
-void EdgeMarks::mark(std::size_t triangle)
-{
-	const double longest_m = longest(triangle);
-	for (std::size_t edge = 0; edge < 3; ++edge)
-	{
-		if (m_length[m_edge[3 * triangle + edge]] >= kNearlyAsLong * longest_m)
-		{
-			markEdge(m_edge[3 * triangle + edge]);
-		}
-	}
-	while (!m_todo.empty())
-	{
-		const uint32_t edge = m_todo.back();
-		m_todo.pop_back();
-		for (std::size_t i = m_first[edge]; i < m_first[edge + 1]; ++i)
-		{
-			const std::size_t t = m_triangle[i];
-			const double length_m = longest(t);
-			for (std::size_t k = 0; k < 3; ++k) // the first of equally long edges
-			{
-				if (m_length[m_edge[3 * t + k]] == length_m)
-				{
-					markEdge(m_edge[3 * t + k]);
-					break;
-				}
-			}
-		}
-	}
-}
-
-std::size_t EdgeMarks::newVertices() const
-{
-	std::vector<uint64_t> pairs;
-	for (std::size_t slot = 0; slot < m_edge.size(); ++slot)
-	{
-		if (m_marked[m_edge[slot]] != 0)
-		{
-			const glm::uvec3 corner = m_level.triangles[slot / 3];
-			pairs.push_back(pairOf(corner[static_cast<int>(slot % 3)], corner[static_cast<int>((slot + 1) % 3)]));
-		}
-	}
-	std::sort(pairs.begin(), pairs.end());
-	return static_cast<std::size_t>(std::unique(pairs.begin(), pairs.end()) - pairs.begin());
-}
-
-void EdgeMarks::clear()
-{
-	std::fill(m_marked.begin(), m_marked.end(), uint8_t{0});
-}
-
-void splitMarked(Level& level, std::vector<SurfaceSample>& samples, const EdgeMarks& marks)
-{
-	const Splitter splitter(level, marks);
-	std::vector<glm::uvec3> triangles;
-	std::vector<uint32_t> materials;
-	std::vector<SurfaceSample> moved;
-	moved.reserve(samples.size());
-	std::vector<std::vector<SurfaceSample>> of_part(4);
-	std::size_t next = 0;
-	for (Mesh& mesh : level.meshes)
-	{
-		const std::size_t first = triangles.size();
-		for (std::size_t t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t)
-		{
-			const std::vector<Part> parts = splitter.partsOf(t);
-			for (; next < samples.size() && samples[next].triangle == t; ++next)
-			{
-				std::size_t best = 0;
-				glm::dvec3 weights(-1e300);
-				for (std::size_t i = 0; i < parts.size(); ++i)
-				{
-					const glm::dvec3 here = weightsIn(parts[i], {samples[next].b, samples[next].c});
-					if (std::min({here.x, here.y, here.z}) > std::min({weights.x, weights.y, weights.z}))
-					{
-						best = i;
-						weights = here;
-					}
-				}
-				SurfaceSample sample = samples[next];
-				sample.triangle = static_cast<uint32_t>(triangles.size() + best);
-				sample.b = static_cast<float>(weights.y);
-				sample.c = static_cast<float>(weights.z);
-				of_part[best].push_back(sample);
-			}
-			for (std::size_t i = 0; i < parts.size(); ++i)
-			{
-				triangles.emplace_back(parts[i][0].vertex, parts[i][1].vertex, parts[i][2].vertex);
-				materials.push_back(level.materials[t]);
-				moved.insert(moved.end(), of_part[i].begin(), of_part[i].end());
-				of_part[i].clear();
-			}
-		}
-		mesh.first_triangle = first;
-		mesh.triangle_count = triangles.size() - first;
-	}
-	level.triangles = std::move(triangles);
-	level.materials = std::move(materials);
-	samples = std::move(moved);
-}
 
 VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const RunSettings& run)
 {
@@ -469,7 +474,8 @@ VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const 
 	VertexBake bake;
 	Level& level = bake.refined.emplace(tracer.level());
 	const int rays = std::min(settings.rays, kRaysOfPoint);
-	const Density density = densityOf(tracer, settings, rays, totalOf(areasOf(level)));
+	const std::vector<double> all_areas = areasOf(level);
+	const Density density = densityOf(tracer, settings, rays, std::accumulate(all_areas.begin(), all_areas.end(), 0.0));
 	const double least_edge_m = leastEdge(tracer, settings);
 	std::vector<SurfaceSample> samples;
 	bake.points = topUp(tracer, level, samples, density, rays, settings.seed, settings, run);
@@ -479,7 +485,7 @@ VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const 
 		const ProgressCounter stage(run.progress, "fit");
 		const std::vector<double> areas = areasOf(level);
 		const Unknowns unknowns = unknownsOf(level, settings.sides);
-		const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings.seed, fitSettingsOf(settings));
+		const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings);
 		take(bake, level, unknowns, fitted);
 		EdgeMarks marks(level, unknowns);
 		const Worst worst =
@@ -504,8 +510,7 @@ VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const 
 		bake.points += topUp(tracer, level, samples, density, rays, seed, settings, run);
 	}
 	bake.rays = bake.points * static_cast<std::size_t>(rays);
-	bake.buried = buriedOf(samples);
-	bake.shut = shutOf(samples);
+	countUnseen(samples, bake);
 	return bake;
 }
 

@@ -3,17 +3,16 @@
 // E. Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
 #include "bake/surface_samples.h"
 
-#include "bake/bake.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/work_units.h"
-#include "scene/ray_triangle.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace nook
 {
@@ -52,24 +51,11 @@ bool hasTwoSides(const Level& level, std::size_t triangle)
 	return level.material_list[level.materials[triangle]].two_sided;
 }
 
-double sumOf(std::span<const double> values)
-{
-	double sum = 0.0;
-	for (const double value : values)
-	{
-		sum += value;
-	}
-	return sum;
-}
-
 // Position on the sample's side of its triangle, with the triangle's own normal.
 ReferencePoint flatPointOf(const Level& level, const SurfaceSample& sample)
 {
 	const glm::uvec3 corner = level.triangles[sample.triangle];
-	const auto b = static_cast<double>(sample.b);
-	const auto c = static_cast<double>(sample.c);
-	const glm::dvec3 position =
-		(1.0 - b - c) * level.positions[corner[0]] + b * level.positions[corner[1]] + c * level.positions[corner[2]];
+	const glm::dvec3 position = interpolated(level.positions, corner, static_cast<double>(sample.b), static_cast<double>(sample.c));
 	return {position, (sample.back ? -1.0 : 1.0) * geometricNormal(level, sample.triangle), 0.0};
 }
 
@@ -132,17 +118,16 @@ std::vector<double> areasOf(const Level& level)
 {
 	std::vector<double> areas;
 	areas.reserve(level.triangles.size());
-	for (const glm::uvec3& t : level.triangles)
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
 	{
-		const glm::dvec3 a = level.positions[t.x];
-		areas.push_back(0.5 * glm::length(glm::cross(level.positions[t.y] - a, level.positions[t.z] - a)));
+		areas.push_back(0.5 * glm::length(twiceAreaOf(level, t)));
 	}
 	return areas;
 }
 
 std::vector<std::size_t> samplesOfTriangles(std::span<const double> areas, std::size_t count)
 {
-	const double total = sumOf(areas);
+	const double total = std::accumulate(areas.begin(), areas.end(), 0.0);
 	const double even = 0.5 * static_cast<double>(count) / static_cast<double>(areas.size());
 	const double by_area = total > 0.0 ? 0.5 * static_cast<double>(count) / total : 0.0;
 	std::vector<std::size_t> counts;
@@ -199,26 +184,29 @@ std::vector<SurfaceSample> SamplePlaces::all() const
 	return samples;
 }
 
-std::size_t samplesFor(std::size_t values, int rays)
+void countUnseen(std::span<const SurfaceSample> samples, VertexBake& bake)
 {
-	return static_cast<std::size_t>(std::ceil(static_cast<double>(values) * rays / std::min(rays, kRaysOfPoint)));
+	for (const SurfaceSample& sample : samples)
+	{
+		bake.buried += sample.buried ? 1U : 0U;
+		bake.shut += sample.shut && !sample.buried ? 1U : 0U;
+	}
 }
 
-std::size_t buriedOf(std::span<const SurfaceSample> samples)
+ReferenceSettings raysOf(const BakeSettings& settings, int rays, uint32_t seed)
 {
-	return static_cast<std::size_t>(
-		std::count_if(samples.begin(), samples.end(), [](const SurfaceSample& sample) { return sample.buried; }));
-}
-
-std::size_t shutOf(std::span<const SurfaceSample> samples)
-{
-	return static_cast<std::size_t>(
-		std::count_if(samples.begin(), samples.end(), [](const SurfaceSample& sample) { return sample.shut && !sample.buried; }));
+	ReferenceSettings how;
+	how.radius_m = settings.radius_m;
+	how.falloff = settings.falloff;
+	how.falloff_u_m = settings.falloff_u_m;
+	how.rays = rays;
+	how.seed = seed;
+	return how;
 }
 
 std::vector<SurfaceSample> placeByArea(const Level& level, std::span<const double> areas, std::size_t count, uint32_t seed)
 {
-	const double step = sumOf(areas) / static_cast<double>(count);
+	const double step = std::accumulate(areas.begin(), areas.end(), 0.0) / static_cast<double>(count);
 	std::vector<SurfaceSample> samples;
 	samples.reserve(count);
 	Random random(seed, level.triangles.size());
@@ -251,11 +239,7 @@ void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSam
 void traceSamples(const Tracer& tracer, const Level& level, std::size_t count, const BlockAt& block_at,
 				  const BakeSettings& settings, int rays, uint32_t seed, const RunSettings& run, const char* stage)
 {
-	ReferenceSettings how;
-	how.radius_m = settings.radius_m;
-	how.falloff = settings.falloff;
-	how.falloff_u_m = settings.falloff_u_m;
-	how.rays = rays;
+	ReferenceSettings how = raysOf(settings, rays, seed);
 	how.measure = settings.bent ? ReferenceMeasure::bent : ReferenceMeasure::obscurance;
 	ProgressCounter progress(run.progress, stage, count);
 	for (std::size_t first = 0; first < count; first += kBlock)

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bake/bake.h"
-#include "scene/level.h"
+#include "scene/ray_triangle.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -53,11 +53,29 @@ private:
 	std::vector<std::size_t> m_first; // start of each triangle's samples, and the end
 };
 
-// Number of points for that many values with `rays` rays each, at kRaysOfPoint rays per point or all of them.
-std::size_t samplesFor(std::size_t values, int rays);
+// Counts the samples inside matter, and of the others those in gaps.
+void countUnseen(std::span<const SurfaceSample> samples, VertexBake& bake);
 
-std::size_t buriedOf(std::span<const SurfaceSample> samples);
-std::size_t shutOf(std::span<const SurfaceSample> samples); // not buried
+// Rays as the bake's settings say, to measure obscurance.
+ReferenceSettings raysOf(const BakeSettings& settings, int rays, uint32_t seed);
+
+// The value at the barycentric weights b and c of a triangle's second and third corner.
+template <class List, class Number> auto interpolated(const List& values, glm::uvec3 triangle, Number b, Number c)
+{
+	return (Number{1} - b - c) * values[triangle.x] + b * values[triangle.y] + c * values[triangle.z];
+}
+
+// Barycentric weights of a point in the plane of a triangle; not finite if it has no area.
+inline glm::dvec3 weightsIn(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 p)
+{
+	const glm::dvec2 u = b - a;
+	const glm::dvec2 v = c - a;
+	const glm::dvec2 w = p - a;
+	const double area = u.x * v.y - u.y * v.x;
+	const double of_b = (w.x * v.y - w.y * v.x) / area;
+	const double of_c = (u.x * w.y - u.y * w.x) / area;
+	return {1.0 - of_b - of_c, of_b, of_c};
+}
 
 // `count` points uniform by area, ordered by triangle; both sides of two-sided materials are equally likely.
 std::vector<SurfaceSample> placeByArea(const Level& level, std::span<const double> areas, std::size_t count, uint32_t seed);
@@ -94,5 +112,29 @@ std::vector<glm::vec3> vertexNormals(const Level& level);
 // Vertices share a value if their positions are equal and their normals differ by less than 2.6 degrees. Unused ones have values
 // too. BakeSides::separate: those of two-sided materials have two; the backs come last, in the order of the fronts.
 Unknowns unknownsOf(const Level& level, BakeSides sides = BakeSides::mean);
+
+// Subdivides a level until its vertex bake meets a requested error.
+
+// Alternates fitting and subdivision until no triangle's error exceeds settings.max_error. Requires max_error > 0 and
+// BakeFit::surface.
+VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const RunSettings& run);
+
+// Fits vertex values whose interpolation over the triangles is closest to the surface samples.
+
+struct FittedValues
+{
+	std::vector<float> values;    // one per unknown; 1 without a triangle
+	std::vector<glm::dvec3> bent; // one per unknown: visibility times direction, not normalised; empty if not requested
+	double standard_error = 0.0;  // root mean square effect of the samples' standard errors
+};
+
+// Area-weighted least squares with bounded values. Samples are ordered by triangle, at least one each. Values that no sample
+// determines are smooth. Samples inside matter or in gaps have a thousandth of the weight, so they decide only where there are no
+// others. Values are at most 1, and at least 0, or −1 with BakeSettings::base.
+FittedValues fitValues(const Level& level, std::span<const double> areas, const Unknowns& unknowns,
+					   std::span<const SurfaceSample> samples, const BakeSettings& settings);
+
+// Stores the vertices' values and standard error. Bent normals are normalised; the vertex normal replaces a zero.
+void take(VertexBake& bake, const Level& level, const Unknowns& unknowns, const FittedValues& fitted);
 
 } // namespace nook

@@ -3,13 +3,13 @@
 
 #include "bake/surface_samples.h"
 #include "core/decimal.h"
-#include "core/error.h"
+#include "core/words.h"
+#include "scene/topology.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -98,18 +98,11 @@ void pull(std::vector<float>& values, int size_px)
 // In texels: adjacent triangles of a chart overlap only by rounding.
 constexpr double kWellInside_px = 0.1;
 
-uint32_t rootOf(std::vector<uint32_t>& parent, uint32_t i)
-{
-	while (parent[i] != i)
-	{
-		parent[i] = parent[parent[i]];
-		i = parent[i];
-	}
-	return i;
-}
+constexpr uint32_t kNoTriangle = ~uint32_t{0};
+constexpr int kSamplesAcross = 4; // per texel, in each direction
 
-// Maps each vertex to the first one with the same position and coordinates.
-std::vector<uint32_t> joinedVertices(const Level& level, std::span<const glm::vec2> uvs)
+// Joins vertices with the same position and coordinates.
+void joinVertices(const Level& level, std::span<const glm::vec2> uvs, Groups& groups)
 {
 	std::vector<uint32_t> order(uvs.size());
 	std::iota(order.begin(), order.end(), 0U);
@@ -119,12 +112,97 @@ std::vector<uint32_t> joinedVertices(const Level& level, std::span<const glm::ve
 		return std::tuple(uvs[v].x, uvs[v].y, p.x, p.y, p.z);
 	};
 	std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return std::tuple(key(a), a) < std::tuple(key(b), b); });
-	std::vector<uint32_t> first(uvs.size());
-	for (std::size_t i = 0; i < order.size(); ++i)
+	for (std::size_t i = 1; i < order.size(); ++i)
 	{
-		first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
+		if (key(order[i]) == key(order[i - 1]))
+		{
+			groups.join(order[i - 1], order[i]);
+		}
 	}
-	return first;
+}
+
+// Chart number of each triangle, from 0. Triangles that share vertices, or positions with the same coordinates, form one chart.
+std::vector<uint32_t> chartsOf(const Level& level, std::span<const glm::vec2> uvs, std::size_t& count)
+{
+	Groups groups(uvs.size());
+	joinVertices(level, uvs, groups);
+	for (const glm::uvec3& t : level.triangles)
+	{
+		groups.join(t.x, t.y);
+		groups.join(t.x, t.z);
+	}
+	std::vector<uint32_t> number(uvs.size(), kNoTriangle);
+	std::vector<uint32_t> charts;
+	charts.reserve(level.triangles.size());
+	count = 0;
+	for (const glm::uvec3& t : level.triangles)
+	{
+		uint32_t& chart = number[groups.rootOf(t.x)];
+		if (chart == kNoTriangle)
+		{
+			chart = static_cast<uint32_t>(count++);
+		}
+		charts.push_back(chart);
+	}
+	return charts;
+}
+
+// Barycentric weights at a position in the texture; not finite if the triangle has no area there.
+glm::dvec3 weightsAt(std::span<const glm::vec2> uvs, const glm::uvec3& triangle, glm::dvec2 uv)
+{
+	return weightsIn(glm::dvec2(uvs[triangle.x]), glm::dvec2(uvs[triangle.y]), glm::dvec2(uvs[triangle.z]), uv);
+}
+
+// Returns the triangle under each texel sample in rows [first_row, first_row + rows), or kNoTriangle: kSamplesAcross × size_px per
+// row. Adds to `overlaps` the samples well inside two triangles, and marks in `hit` the triangles that own a sample.
+std::vector<uint32_t> rasterise(const Level& level, std::span<const glm::vec2> uvs, int size_px, int first_row, int rows,
+								std::size_t& overlaps, std::vector<uint8_t>& hit)
+{
+	const int across = kSamplesAcross * size_px;
+	const int top = kSamplesAcross * first_row;
+	const int bottom = top + kSamplesAcross * rows;
+	std::vector<uint32_t> owner(static_cast<std::size_t>(across) * static_cast<std::size_t>(bottom - top), kNoTriangle);
+	std::vector<uint8_t> well(owner.size(), 0);
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
+	{
+		const glm::uvec3 corner = level.triangles[t];
+		const glm::dvec2 a = static_cast<double>(across) * glm::dvec2(uvs[corner.x]);
+		const glm::dvec2 b = static_cast<double>(across) * glm::dvec2(uvs[corner.y]);
+		const glm::dvec2 c = static_cast<double>(across) * glm::dvec2(uvs[corner.z]);
+		const glm::dvec2 least = glm::min(a, glm::min(b, c));
+		const glm::dvec2 most = glm::max(a, glm::max(b, c));
+		const double twice = std::fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+		const double longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+		// Samples are at cell centres; a weight times the height above the opposite edge is at least weight × twice / longest.
+		const double well_inside = kSamplesAcross * kWellInside_px * longest / twice;
+		const int x0 = std::max(0, static_cast<int>(std::ceil(least.x - 0.5)));
+		const int x1 = std::min(across - 1, static_cast<int>(std::floor(most.x - 0.5)));
+		const int y0 = std::max(top, static_cast<int>(std::ceil(least.y - 0.5)));
+		const int y1 = std::min(bottom - 1, static_cast<int>(std::floor(most.y - 0.5)));
+		for (int y = y0; y <= y1; ++y)
+		{
+			for (int x = x0; x <= x1; ++x)
+			{
+				const glm::dvec3 weights = weightsAt(uvs, corner, glm::dvec2(x + 0.5, y + 0.5) / static_cast<double>(across));
+				const double inside = std::min({weights.x, weights.y, weights.z});
+				if (!(inside >= 0.0)) // also rejects NaN
+				{
+					continue;
+				}
+				const std::size_t i =
+					static_cast<std::size_t>(y - top) * static_cast<std::size_t>(across) + static_cast<std::size_t>(x);
+				const bool is_well = inside > well_inside;
+				overlaps += is_well && well[i] != 0 ? 1U : 0U;
+				hit[t] = 1;
+				if (owner[i] == kNoTriangle || (is_well && well[i] == 0))
+				{
+					owner[i] = static_cast<uint32_t>(t);
+				}
+				well[i] = is_well ? 1 : well[i];
+			}
+		}
+	}
+	return owner;
 }
 
 constexpr int kRowsAtOnce = 64;
@@ -133,7 +211,7 @@ constexpr std::size_t kRayedOfTexel = 4; // samples per texel that get rays: eno
 
 [[noreturn]] void refuseUvs(const Level& level, const std::string& found, const std::string& expected)
 {
-	throw Error(ExitCode::invalid_input, level.name + ": texture coordinates: found " + found + ", expected " + expected);
+	refuseInput(level.name + ": texture coordinates", found, expected);
 }
 
 void checkUvs(const Level& level, std::span<const glm::vec2> uvs)
@@ -237,7 +315,7 @@ private:
 
 SurfaceSample sampleAt(const Level& level, std::span<const glm::vec2> uvs, uint32_t triangle, glm::dvec2 uv)
 {
-	const glm::dvec3 weights = weightsAt(level, uvs, triangle, uv);
+	const glm::dvec3 weights = weightsAt(uvs, level.triangles[triangle], uv);
 	SurfaceSample sample;
 	sample.triangle = triangle;
 	sample.b = static_cast<float>(std::clamp(weights.y, 0.0, 1.0));
@@ -313,97 +391,6 @@ void fillEmpty(std::vector<float>& values, int size_px)
 	pull(values, size_px);
 }
 
-std::vector<uint32_t> chartsOf(const Level& level, std::span<const glm::vec2> uvs, std::size_t& count)
-{
-	std::vector<uint32_t> parent = joinedVertices(level, uvs);
-	for (const glm::uvec3& t : level.triangles)
-	{
-		for (int corner = 1; corner < 3; ++corner)
-		{
-			const uint32_t a = rootOf(parent, t[0]);
-			const uint32_t b = rootOf(parent, t[corner]);
-			parent[std::max(a, b)] = std::min(a, b);
-		}
-	}
-	std::vector<uint32_t> number(parent.size(), kNoTriangle);
-	std::vector<uint32_t> charts;
-	charts.reserve(level.triangles.size());
-	count = 0;
-	for (const glm::uvec3& t : level.triangles)
-	{
-		uint32_t& chart = number[rootOf(parent, t.x)];
-		if (chart == kNoTriangle)
-		{
-			chart = static_cast<uint32_t>(count++);
-		}
-		charts.push_back(chart);
-	}
-	return charts;
-}
-
-glm::dvec3 weightsAt(const Level& level, std::span<const glm::vec2> uvs, std::size_t triangle, glm::dvec2 uv)
-{
-	const glm::uvec3 t = level.triangles[triangle];
-	const glm::dvec2 a(uvs[t.x]);
-	const glm::dvec2 u = glm::dvec2(uvs[t.y]) - a;
-	const glm::dvec2 v = glm::dvec2(uvs[t.z]) - a;
-	const glm::dvec2 w = uv - a;
-	const double area = u.x * v.y - u.y * v.x;
-	const double b = (w.x * v.y - w.y * v.x) / area;
-	const double c = (u.x * w.y - u.y * w.x) / area;
-	return {1.0 - b - c, b, c};
-}
-
-std::vector<uint32_t> rasterise(const Level& level, std::span<const glm::vec2> uvs, int size_px, int first_row, int rows,
-								std::size_t& overlaps, std::vector<uint8_t>& hit)
-{
-	const int across = kSamplesAcross * size_px;
-	const int top = kSamplesAcross * first_row;
-	const int bottom = top + kSamplesAcross * rows;
-	std::vector<uint32_t> owner(static_cast<std::size_t>(across) * static_cast<std::size_t>(bottom - top), kNoTriangle);
-	std::vector<uint8_t> well(owner.size(), 0);
-	for (std::size_t t = 0; t < level.triangles.size(); ++t)
-	{
-		const glm::uvec3 corner = level.triangles[t];
-		const glm::dvec2 a = static_cast<double>(across) * glm::dvec2(uvs[corner.x]);
-		const glm::dvec2 b = static_cast<double>(across) * glm::dvec2(uvs[corner.y]);
-		const glm::dvec2 c = static_cast<double>(across) * glm::dvec2(uvs[corner.z]);
-		const glm::dvec2 least = glm::min(a, glm::min(b, c));
-		const glm::dvec2 most = glm::max(a, glm::max(b, c));
-		const double twice = std::fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
-		const double longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
-		// Samples are at cell centres; a weight times the height above the opposite edge is at least weight × twice / longest.
-		const double well_inside = kSamplesAcross * kWellInside_px * longest / twice;
-		const int x0 = std::max(0, static_cast<int>(std::ceil(least.x - 0.5)));
-		const int x1 = std::min(across - 1, static_cast<int>(std::floor(most.x - 0.5)));
-		const int y0 = std::max(top, static_cast<int>(std::ceil(least.y - 0.5)));
-		const int y1 = std::min(bottom - 1, static_cast<int>(std::floor(most.y - 0.5)));
-		for (int y = y0; y <= y1; ++y)
-		{
-			for (int x = x0; x <= x1; ++x)
-			{
-				const glm::dvec3 weights = weightsAt(level, uvs, t, glm::dvec2(x + 0.5, y + 0.5) / static_cast<double>(across));
-				const double inside = std::min({weights.x, weights.y, weights.z});
-				if (!(inside >= 0.0)) // also rejects NaN
-				{
-					continue;
-				}
-				const std::size_t i =
-					static_cast<std::size_t>(y - top) * static_cast<std::size_t>(across) + static_cast<std::size_t>(x);
-				const bool is_well = inside > well_inside;
-				overlaps += is_well && well[i] != 0 ? 1U : 0U;
-				hit[t] = 1;
-				if (owner[i] == kNoTriangle || (is_well && well[i] == 0))
-				{
-					owner[i] = static_cast<uint32_t>(t);
-				}
-				well[i] = is_well ? 1 : well[i];
-			}
-		}
-	}
-	return owner;
-}
-
 TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, int size_px, const BakeSettings& settings,
 						const RunSettings& run)
 {
@@ -458,9 +445,7 @@ BakeCheck checkTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, con
 	const Level& level = tracer.level();
 	const auto valueOf = [&](const SurfaceSample& sample)
 	{
-		const glm::uvec3 t = level.triangles[sample.triangle];
-		const glm::vec2 uv = (1.0F - sample.b - sample.c) * uvs[t.x] + sample.b * uvs[t.y] + sample.c * uvs[t.z];
-		return alphaAt(mask, glm::dvec2(uv));
+		return alphaAt(mask, glm::dvec2(interpolated(uvs, level.triangles[sample.triangle], sample.b, sample.c)));
 	};
 	return checkValues(tracer, level, valueOf, settings, points, run);
 }

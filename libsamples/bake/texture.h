@@ -46,20 +46,4 @@ BakeCheck checkTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, con
 // Grzeszczuk, R. Szeliski, M. Cohen, "The Lumigraph", 1996: push and pull). All become 1 if all are empty.
 void fillEmpty(std::vector<float>& values, int size_px);
 
-// Finds the triangle under each sample of a texture.
-
-inline constexpr uint32_t kNoTriangle = ~uint32_t{0};
-inline constexpr int kSamplesAcross = 4; // per texel, in each direction
-
-// Chart number of each triangle, from 0. Triangles that share vertices, or positions with the same coordinates, form one chart.
-std::vector<uint32_t> chartsOf(const Level& level, std::span<const glm::vec2> uvs, std::size_t& count);
-
-// Returns the triangle under each texel sample in rows [first_row, first_row + rows), or kNoTriangle: kSamplesAcross × size_px per
-// row. Adds to `overlaps` the samples well inside two triangles, and marks in `hit` the triangles that own a sample.
-std::vector<uint32_t> rasterise(const Level& level, std::span<const glm::vec2> uvs, int size_px, int first_row, int rows,
-								std::size_t& overlaps, std::vector<uint8_t>& hit);
-
-// Barycentric weights at a position in the texture; not finite if the triangle has no area there.
-glm::dvec3 weightsAt(const Level& level, std::span<const glm::vec2> uvs, std::size_t triangle, glm::dvec2 uv);
-
 } // namespace nook

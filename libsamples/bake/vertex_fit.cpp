@@ -4,9 +4,8 @@
 // differences along edges, weakly, for vertices with few samples around. Solved by conjugate gradients (M. Hestenes, E. Stiefel,
 // 1952) with the diagonal as preconditioner; values beyond their bounds are then clamped while the others adapt (projected
 // Gauss-Seidel: R. Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992). One thread, in a fixed order.
-#include "bake/subdivide.h"
-
 #include "bake/surface_samples.h"
+
 #include "core/random.h"
 
 #include <glm/geometric.hpp>
@@ -239,12 +238,7 @@ Equations equationsOf(const Level& level, std::span<const double> areas, const U
 
 double dot(const std::vector<double>& a, const std::vector<double>& b)
 {
-	double sum = 0.0;
-	for (std::size_t i = 0; i < a.size(); ++i)
-	{
-		sum += a[i] * b[i];
-	}
-	return sum;
+	return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
 // Unknowns without a triangle are left unchanged.
@@ -326,13 +320,11 @@ void keepWithin(const Matrix& matrix, const std::vector<double>& right, double l
 std::vector<glm::vec3> vertexNormals(const Level& level)
 {
 	std::vector<glm::dvec3> sums(level.positions.size(), glm::dvec3(0.0));
-	for (const glm::uvec3& t : level.triangles)
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
 	{
-		const glm::dvec3 a = level.positions[t.x];
-		const glm::dvec3 normal = glm::cross(level.positions[t.y] - a, level.positions[t.z] - a); // length is twice the area
 		for (int corner = 0; corner < 3; ++corner)
 		{
-			sums[t[corner]] += normal;
+			sums[level.triangles[t][corner]] += twiceAreaOf(level, t);
 		}
 	}
 	std::vector<glm::vec3> normals = level.normals;
@@ -398,19 +390,14 @@ Unknowns unknownsOf(const Level& level, BakeSides sides)
 	return unknowns;
 }
 
-VertexFitSettings fitSettingsOf(const BakeSettings& settings)
-{
-	return {settings.bent, settings.base ? -1.0F : 0.0F};
-}
-
 FittedValues fitValues(const Level& level, std::span<const double> areas, const Unknowns& unknowns,
-					   std::span<const SurfaceSample> samples, uint32_t seed, const VertexFitSettings& settings)
+					   std::span<const SurfaceSample> samples, const BakeSettings& settings)
 {
 	assert(areas.size() == level.triangles.size());
-	const Equations equations = equationsOf(level, areas, unknowns, samples, seed, settings.bent);
+	const Equations equations = equationsOf(level, areas, unknowns, samples, settings.seed, settings.bent);
 	std::vector<double> x(unknowns.count, 1.0);
 	solve(equations.matrix, equations.right, x);
-	keepWithin(equations.matrix, equations.right, static_cast<double>(settings.least), x);
+	keepWithin(equations.matrix, equations.right, settings.base ? -1.0 : 0.0, x);
 	std::vector<double> noise(unknowns.count, 0.0);
 	solve(equations.matrix, equations.noise, noise);
 	FittedValues fitted;
@@ -439,37 +426,29 @@ void take(VertexBake& bake, const Level& level, const Unknowns& unknowns, const 
 {
 	bake.standard_error = fitted.standard_error;
 	bake.unknowns = unknowns.count;
-	const std::size_t count = unknowns.of_vertex.size();
-	bake.visibility.resize(count);
-	bake.back.resize(unknowns.has_sides ? count : 0);
-	for (std::size_t v = 0; v < count; ++v)
+	const auto takeSide = [&](const std::vector<uint32_t>& of, std::vector<float>& values, std::vector<glm::vec3>& bent)
 	{
-		bake.visibility[v] = fitted.values[unknowns.of_vertex[v]];
-		if (unknowns.has_sides)
+		values.resize(of.size());
+		std::transform(of.begin(), of.end(), values.begin(), [&](uint32_t i) { return fitted.values[i]; });
+		if (fitted.bent.empty())
 		{
-			bake.back[v] = fitted.values[unknowns.of_back[v]];
+			return;
 		}
-	}
-	if (fitted.bent.empty())
-	{
-		return;
-	}
-	const std::vector<glm::vec3> normals = vertexNormals(level);
-	const auto unitOr = [](glm::dvec3 v, glm::vec3 normal)
-	{
-		const double length = glm::length(v);
-		return length > 1e-9 ? glm::vec3(v / length) : normal == glm::vec3(0.0F) ? glm::vec3(0.0F, 1.0F, 0.0F) : normal;
+		bent = vertexNormals(level);
+		for (std::size_t v = 0; v < of.size(); ++v)
+		{
+			const glm::dvec3 mean = fitted.bent[of[v]];
+			const double length = glm::length(mean);
+			bent[v] = length > 1e-9                    ? glm::vec3(mean / length)
+					  : bent[v] == glm::vec3(0.0F)     ? glm::vec3(0.0F, 1.0F, 0.0F)
+					  : of[v] == unknowns.of_vertex[v] ? bent[v]
+													   : -bent[v];
+		}
 	};
-	bake.bent.resize(count);
-	bake.bent_back.resize(unknowns.has_sides ? count : 0);
-	for (std::size_t v = 0; v < count; ++v)
+	takeSide(unknowns.of_vertex, bake.visibility, bake.bent);
+	if (unknowns.has_sides)
 	{
-		bake.bent[v] = unitOr(fitted.bent[unknowns.of_vertex[v]], normals[v]);
-		if (unknowns.has_sides)
-		{
-			bake.bent_back[v] =
-				unitOr(fitted.bent[unknowns.of_back[v]], unknowns.of_back[v] == unknowns.of_vertex[v] ? normals[v] : -normals[v]);
-		}
+		takeSide(unknowns.of_back, bake.back, bake.bent_back);
 	}
 }
 

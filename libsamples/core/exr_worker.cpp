@@ -12,83 +12,21 @@
 #include <ImfCompression.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfMatrixAttribute.h>
 #include <ImfOutputFile.h>
 #include <ImfPartType.h>
+#include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 
-#include <algorithm>
 #include <array>
-#include <cstring>
 #include <exception>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <tuple>
-#include <vector>
 
 namespace nook
 {
 namespace
 {
-
-class MemoryOutput : public Imf::OStream
-{
-public:
-	MemoryOutput() : OStream("memory") {}
-	void write(const char bytes[], int count) override
-	{
-		m_bytes.resize(std::max(m_bytes.size(), m_at + static_cast<std::size_t>(count)));
-		std::memcpy(m_bytes.data() + m_at, bytes, static_cast<std::size_t>(count));
-		m_at += static_cast<std::size_t>(count);
-	}
-	uint64_t tellp() override
-	{
-		return m_at;
-	}
-	void seekp(uint64_t place) override
-	{
-		m_at = place;
-	}
-	const std::vector<char>& bytes() const
-	{
-		return m_bytes;
-	}
-
-private:
-	std::vector<char> m_bytes;
-	std::size_t m_at = 0;
-};
-
-class MemoryInput : public Imf::IStream
-{
-public:
-	explicit MemoryInput(const std::string& bytes) : IStream("memory"), m_bytes(bytes) {}
-	bool read(char bytes[], int count) override
-	{
-		if (count < 0 || m_at > m_bytes.size() || m_bytes.size() - m_at < static_cast<std::size_t>(count))
-		{
-			throw Iex::InputExc("end of the file");
-		}
-		std::memcpy(bytes, m_bytes.data() + m_at, static_cast<std::size_t>(count));
-		m_at += static_cast<std::size_t>(count);
-		return m_at < m_bytes.size();
-	}
-	uint64_t tellg() override
-	{
-		return m_at;
-	}
-	void seekg(uint64_t place) override
-	{
-		m_at = place;
-	}
-
-private:
-	const std::string& m_bytes;
-	std::size_t m_at = 0;
-};
 
 // A slice of a picture with `channels` interleaved floats.
 Imf::Slice sliceOf(float* values, std::size_t channel, std::size_t channels, int width_px)
@@ -147,7 +85,7 @@ void encode(ValueReader& request, ValueWriter& answer)
 		header.channels().insert(names[i], Imf::Channel(Imf::FLOAT));
 		buffer.insert(names[i], sliceOf(pixels.data(), i, names.size(), image.width_px));
 	}
-	MemoryOutput memory;
+	Imf::StdOSStream memory;
 	try
 	{
 		Imf::OutputFile output(memory, header, 0);
@@ -158,15 +96,13 @@ void encode(ValueReader& request, ValueWriter& answer)
 	{
 		throw Error(ExitCode::runtime, std::string("image: ") + error.what());
 	}
-	answer.values(memory.bytes());
+	answer.values(memory.str());
 }
 
 // Lower-case part of a channel's name after its layer.
 std::string suffixOf(const std::string& name)
 {
-	std::string suffix = name.substr(name.rfind('.') + 1);
-	std::transform(suffix.begin(), suffix.end(), suffix.begin(), lowerCase);
-	return suffix;
+	return lowered(name.substr(name.rfind('.') + 1));
 }
 
 // Orders channel names as OpenImageIO does: by layer (the part before the last dot), colours first, then by name.
@@ -260,7 +196,8 @@ Imath::V2i sizeOf(const Imf::Header& header)
 // Nothing if `all` is false and encode() did not write the file.
 std::optional<Image> imageOf(const std::string& bytes, const std::string& name, bool all)
 {
-	MemoryInput memory(bytes);
+	Imf::StdISStream memory;
+	memory.str(bytes);
 	Imf::InputFile input(memory, 0);
 	const Imf::Header& header = input.header();
 	Image image;
@@ -311,18 +248,15 @@ template <class T, class Read> Decoded<T> unlessBroken(const Read& read)
 	}
 }
 
-void decode(ValueReader& request, ValueWriter& answer)
+Decoded<Image> decoded(const std::string& bytes, const std::string& name, bool all)
 {
-	const bool all = request.value<bool>();
-	const std::string name = request.text();
-	std::string bytes;
-	request.values(bytes, kMaxFileBytes);
-	send(unlessBroken<Image>([&] { return imageOf(bytes, name, all); }), answer);
+	return unlessBroken<Image>([&] { return imageOf(bytes, name, all); });
 }
 
 std::optional<AlphaImage> alphaOf(const std::string& bytes, const EncodedAlpha& picture, std::size_t max_texels)
 {
-	MemoryInput memory(bytes);
+	Imf::StdISStream memory;
+	memory.str(bytes);
 	Imf::InputFile input(memory, 0);
 	const std::vector<std::string> names = channelNames(input.header());
 	const auto alpha = std::find_if(names.begin(), names.end(),
@@ -362,17 +296,13 @@ Decoded<AlphaImage> decodedAlpha(std::string_view bytes, const EncodedAlpha& pic
 	return unlessBroken<AlphaImage>([&] { return alphaOf(std::string(bytes), picture, max_texels); });
 }
 
-void decodeAlphas(ValueReader& from, ValueWriter& answer)
-{
-	answerAlphas(from, answer, decodedAlpha);
-}
-
 } // namespace
 } // namespace nook
 
 int main(int argc, char** argv)
 {
 	using namespace nook;
-	constexpr std::array<WorkerFunction, 3> kFunctions{{{kEncode, encode}, {kDecode, decode}, {kDecodeAlphas, decodeAlphas}}};
+	constexpr std::array<WorkerFunction, 3> kFunctions{
+		{{kEncode, encode}, {kDecode, answerImage<decoded>}, {kDecodeAlphas, answerAlphas<decodedAlpha>}}};
 	return serveRequests(argc, argv, kFunctions);
 }

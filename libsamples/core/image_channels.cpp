@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/image.h"
 
+#include "core/words.h"
+
 #include <algorithm>
 
 namespace nook
@@ -11,11 +13,7 @@ namespace
 // OpenImageIO versions spell worldToCamera differently.
 bool sameKey(std::string_view a, std::string_view b)
 {
-	const auto lower = [](char c)
-	{
-		return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-	};
-	return std::equal(a.begin(), a.end(), b.begin(), b.end(), [lower](char x, char y) { return lower(x) == lower(y); });
+	return lowered(a) == lowered(b);
 }
 
 } // namespace

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/image_codec.h"
 
-#include "core/error.h"
 #include "core/file.h"
+#include "core/words.h"
 
 namespace nook
 {
@@ -182,14 +182,14 @@ std::size_t checkedTexels(int width_px, int height_px, int channels, std::size_t
 	const auto texels = static_cast<std::size_t>(std::max(width_px, 0)) * static_cast<std::size_t>(std::max(height_px, 0));
 	if (texels > most)
 	{
-		throw Error(ExitCode::invalid_input,
-					name + ": found " + std::to_string(texels) + " texels, expected at most " + std::to_string(most) + option);
+		refuseInput(name, std::to_string(texels) + " texels", "at most " + std::to_string(most) + option);
 	}
 	if (texels == 0 || channels < 1 || texels > kMaxImageValues / static_cast<std::size_t>(channels))
 	{
-		throw Error(ExitCode::invalid_input, name + ": found " + std::to_string(width_px) + "x" + std::to_string(height_px) +
-												 " pixels of " + std::to_string(channels) +
-												 " channels, expected an image that can be read");
+		refuseInput(name,
+					std::to_string(width_px) + "x" + std::to_string(height_px) + " pixels of " + std::to_string(channels) +
+						" channels",
+					"an image that can be read");
 	}
 	return texels;
 }

@@ -4,8 +4,10 @@
 // rest of nook and may be missing, so its worker starts only for a picture that the others decline, and is then kept.
 #pragma once
 
+#include "core/file.h"
 #include "core/image.h"
 #include "core/value_stream.h"
+#include "core/words.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -87,6 +89,21 @@ void receive(AlphaImage& image, ValueReader& from);
 // kDecodeAlphas of a worker that decodes one picture with `decode`.
 using DecodeAlpha = Decoded<AlphaImage> (*)(std::string_view bytes, const EncodedAlpha& picture, std::size_t max_texels);
 void answerAlphas(ValueReader& from, ValueWriter& answer, DecodeAlpha decode);
+template <DecodeAlpha decode> void answerAlphas(ValueReader& from, ValueWriter& answer)
+{
+	answerAlphas(from, answer, decode);
+}
+
+// Likewise kDecode of kExrWorker and kPictureWorker.
+using DecodeImage = Decoded<Image> (*)(const std::string& bytes, const std::string& name, bool all);
+template <DecodeImage decode> void answerImage(ValueReader& from, ValueWriter& answer)
+{
+	const bool all = from.value<bool>();
+	const std::string name = from.text();
+	std::string bytes;
+	from.values(bytes, kMaxFileBytes);
+	send(decode(bytes, name, all), answer);
+}
 
 // The number of texels. Throws Error (invalid_input) if there are none, more than `most`, or too many values; `option` changes the
 // limit.
@@ -101,12 +118,6 @@ inline bool looksPng(std::string_view bytes)
 inline bool looksExr(std::string_view bytes)
 {
 	return bytes.starts_with("\x76\x2F\x31\x01");
-}
-
-// Changes ASCII letters only.
-inline char lowerCase(char c)
-{
-	return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
 // A value in 0…1 as 8 bits, rounded as OpenImageIO does.
@@ -146,15 +157,5 @@ struct PictureSize
 using ReadRow = std::function<bool(ChannelPlace place, std::vector<uint8_t>& values)>;
 std::optional<AlphaImage> readAlpha(const PictureSize& size, const EncodedAlpha& picture, std::size_t max_texels,
 									const ReadRow& read);
-
-inline uint64_t littleEndian(std::string_view bytes, std::size_t at, std::size_t size)
-{
-	uint64_t number = 0;
-	for (std::size_t i = 0; i < size; ++i)
-	{
-		number |= uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8U * i);
-	}
-	return number;
-}
 
 } // namespace nook

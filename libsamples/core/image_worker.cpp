@@ -9,9 +9,6 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include <algorithm>
-#include <functional>
-
 namespace nook
 {
 namespace
@@ -150,17 +147,12 @@ Decoded<AlphaImage> decodedAlpha(std::string_view bytes, const EncodedAlpha& pic
 	return answer;
 }
 
-void decodeAlphas(ValueReader& from, ValueWriter& answer)
-{
-	answerAlphas(from, answer, decodedAlpha);
-}
-
 } // namespace
 } // namespace nook
 
 int main(int argc, char** argv)
 {
 	using namespace nook;
-	constexpr std::array<WorkerFunction, 2> kFunctions{{{kDecode, decode}, {kDecodeAlphas, decodeAlphas}}};
+	constexpr std::array<WorkerFunction, 2> kFunctions{{{kDecode, decode}, {kDecodeAlphas, answerAlphas<decodedAlpha>}}};
 	return serveRequests(argc, argv, kFunctions, keepToOneThread);
 }

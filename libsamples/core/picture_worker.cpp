@@ -12,19 +12,12 @@
 #include <jpeglib.h>
 #include <png.h>
 
-#include <algorithm>
 #include <array>
 #include <csetjmp>
-#include <cstdint>
 #include <cstring>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <set>
 #include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace nook
 {
@@ -105,8 +98,7 @@ bool arePlain(const Notes& texts)
 	return std::all_of(texts.begin(), texts.end(),
 					   [&](const Note& text)
 					   {
-						   std::string key = text.key;
-						   std::transform(key.begin(), key.end(), key.begin(), lowerCase);
+						   const std::string key = lowered(text.key);
 						   return !key.starts_with("raw profile") && keys.insert(key).second;
 					   });
 }
@@ -419,8 +411,7 @@ std::unique_ptr<PictureReader> openedPicture(std::string_view bytes, const std::
 		defect = jpeg->defect();
 		return begins && (jpeg->channels == 1 || jpeg->channels == 3) ? std::move(jpeg) : nullptr; // not CMYK
 	}
-	const std::string ending = name.substr(std::max<std::size_t>(name.size(), 4) - 4);
-	const bool is_tga = std::equal(ending.begin(), ending.end(), ".tga", [](char a, char b) { return lowerCase(a) == b; });
+	const bool is_tga = lowered(name).ends_with(".tga");
 	auto raster = std::make_unique<RasterReader>(bytes);
 	const bool begins = all && (bytes.starts_with("BM") ? raster->readBmpHeader() : is_tga && raster->readTgaHeader());
 	return begins ? std::move(raster) : nullptr;
@@ -433,7 +424,7 @@ float valueAt(const std::vector<uint8_t>& row, std::size_t i, int bits)
 					  : static_cast<float>(row[i]) * (1.0F / 255.0F);
 }
 
-Decoded<Image> decoded(std::string_view bytes, const std::string& name, bool all)
+Decoded<Image> decoded(const std::string& bytes, const std::string& name, bool all)
 {
 	Decoded<Image> answer;
 	const std::unique_ptr<PictureReader> reader = openedPicture(bytes, name, all, answer.defect);
@@ -471,15 +462,6 @@ Decoded<Image> decoded(std::string_view bytes, const std::string& name, bool all
 	return answer;
 }
 
-void decode(ValueReader& request, ValueWriter& answer)
-{
-	const bool all = request.value<bool>();
-	const std::string name = request.text();
-	std::string bytes;
-	request.values(bytes, kMaxFileBytes);
-	send(decoded(bytes, name, all), answer);
-}
-
 Decoded<AlphaImage> decodedAlpha(std::string_view bytes, const EncodedAlpha& picture, std::size_t max_texels)
 {
 	if (isKtx2(bytes))
@@ -513,17 +495,13 @@ Decoded<AlphaImage> decodedAlpha(std::string_view bytes, const EncodedAlpha& pic
 	return answer;
 }
 
-void decodeAlphas(ValueReader& from, ValueWriter& answer)
-{
-	answerAlphas(from, answer, decodedAlpha);
-}
-
 } // namespace
 } // namespace nook
 
 int main(int argc, char** argv)
 {
 	using namespace nook;
-	constexpr std::array<WorkerFunction, 2> kFunctions{{{kDecode, decode}, {kDecodeAlphas, decodeAlphas}}};
+	constexpr std::array<WorkerFunction, 2> kFunctions{
+		{{kDecode, answerImage<decoded>}, {kDecodeAlphas, answerAlphas<decodedAlpha>}}};
 	return serveRequests(argc, argv, kFunctions);
 }

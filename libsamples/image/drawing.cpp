@@ -4,7 +4,7 @@
 
 #include "core/image.h"
 #include "core/math.h"
-#include "core/text.h"
+#include "core/words.h"
 
 #include <glm/geometric.hpp>
 
@@ -157,49 +157,9 @@ void paintLine(Canvas& canvas, const std::vector<glm::dvec2>& points, bool close
 	}
 }
 
-void paintText(Canvas& canvas, const Shape& shape, double scale)
-{
-	const double share = shape.anchor == Anchor::start ? 0.0 : shape.anchor == Anchor::middle ? 0.5 : 1.0;
-	const double size = shape.size * scale;
-	const glm::dvec2 origin = shape.points[0] * scale - glm::dvec2(share * strokeWidthOf(shape.text) * size, 0.0);
-	for (const Stroke& stroke : strokesOf(shape.text))
-	{
-		std::vector<glm::dvec2> points;
-		for (const glm::dvec2& p : stroke)
-		{
-			points.push_back(origin + p * size);
-		}
-		paintLine(canvas, points, false, 0.085 * size, shape.fill);
-	}
-}
+// Strokes of a small plain font, so that pictures need no font file and look the same everywhere.
 
-void paint(Canvas& canvas, const Shape& shape, double scale)
-{
-	if (shape.kind == ShapeKind::text)
-	{
-		paintText(canvas, shape, scale);
-		return;
-	}
-	if (shape.kind == ShapeKind::circle)
-	{
-		return;
-	}
-	std::vector<glm::dvec2> points = shape.points;
-	for (glm::dvec2& p : points)
-	{
-		p *= scale;
-	}
-	const bool stroked = shape.stroke.opacity > 0.0 && shape.stroke_width > 0.0;
-	const double width = shape.stroke_width * scale;
-	if (shape.kind == ShapeKind::polygon)
-	{
-		canvas.fill(points, shape.fill);
-	}
-	if (stroked)
-	{
-		paintLine(canvas, points, shape.kind == ShapeKind::polygon, width, shape.stroke);
-	}
-}
+using Stroke = std::vector<glm::dvec2>; // a polyline; a single point is a dot
 
 constexpr double kUnit = 0.7 / 6.0; // size of a grid unit; capitals are six units high
 constexpr double kSpacing = 1.9;    // units between characters
@@ -264,7 +224,7 @@ constexpr std::array kGlyphs{
 
 const char* formOf(char c)
 {
-	const char lower = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+	const char lower = lowerCase(c);
 	const auto found = std::find_if(kGlyphs.begin(), kGlyphs.end(), [&](const Glyph& glyph) { return glyph.character == lower; });
 	return found == kGlyphs.end() ? "" : found->strokes;
 }
@@ -291,6 +251,63 @@ double addGlyph(const char* form, double x, std::vector<Stroke>& strokes)
 		strokes.back().emplace_back((x + right) * kUnit, -up * kUnit);
 	}
 	return width;
+}
+
+// Strokes of a line of text with its baseline starting at (0, 0), y down, for a font size of 1 (capital height about 0.7), and its
+// width. Letters are drawn as lower case; unsupported characters are blank.
+std::pair<std::vector<Stroke>, double> strokesOf(std::string_view text)
+{
+	std::vector<Stroke> strokes;
+	double x = 0.0;
+	for (const char c : text)
+	{
+		x += addGlyph(formOf(c), x, strokes) + kSpacing;
+	}
+	return {strokes, std::max(0.0, x - kSpacing) * kUnit};
+}
+
+void paintText(Canvas& canvas, const Shape& shape, double scale)
+{
+	const double share = shape.anchor == Anchor::start ? 0.0 : shape.anchor == Anchor::middle ? 0.5 : 1.0;
+	const double size = shape.size * scale;
+	const auto [strokes, width] = strokesOf(shape.text);
+	const glm::dvec2 origin = shape.points[0] * scale - glm::dvec2(share * width * size, 0.0);
+	for (const Stroke& stroke : strokes)
+	{
+		std::vector<glm::dvec2> points;
+		for (const glm::dvec2& p : stroke)
+		{
+			points.push_back(origin + p * size);
+		}
+		paintLine(canvas, points, false, 0.085 * size, shape.fill);
+	}
+}
+
+void paint(Canvas& canvas, const Shape& shape, double scale)
+{
+	if (shape.kind == ShapeKind::circle)
+	{
+		return; // only svgText() draws them
+	}
+	if (shape.kind == ShapeKind::text)
+	{
+		paintText(canvas, shape, scale);
+		return;
+	}
+	std::vector<glm::dvec2> points = shape.points;
+	for (glm::dvec2& p : points)
+	{
+		p *= scale;
+	}
+	const bool closed = shape.kind == ShapeKind::polygon;
+	if (closed)
+	{
+		canvas.fill(points, shape.fill);
+	}
+	if (shape.stroke.opacity > 0.0 && shape.stroke_width > 0.0)
+	{
+		paintLine(canvas, points, closed, shape.stroke_width * scale, shape.stroke);
+	}
 }
 
 // Hundredths, without trailing zeros.
@@ -333,12 +350,9 @@ std::string paint(const char* attribute, const Colour& colour)
 
 std::string paints(const Shape& shape)
 {
-	std::string text = paint("fill", shape.fill);
-	if (shape.stroke.opacity > 0.0)
-	{
-		text += paint("stroke", shape.stroke) + " stroke-width=\"" + lengthText(shape.stroke_width) + "\"";
-	}
-	return text;
+	const bool stroked = shape.stroke.opacity > 0.0;
+	return paint("fill", shape.fill) +
+		   (stroked ? paint("stroke", shape.stroke) + " stroke-width=\"" + lengthText(shape.stroke_width) + "\"" : "");
 }
 
 std::string pathOf(const Shape& shape)
@@ -379,28 +393,6 @@ std::vector<uint8_t> rasterised(const Drawing& drawing)
 		paint(canvas, shape, kSupersampling);
 	}
 	return canvas.reduced();
-}
-
-std::vector<Stroke> strokesOf(std::string_view text)
-{
-	std::vector<Stroke> strokes;
-	double x = 0.0;
-	for (const char c : text)
-	{
-		x += addGlyph(formOf(c), x, strokes) + kSpacing;
-	}
-	return strokes;
-}
-
-double strokeWidthOf(std::string_view text)
-{
-	std::vector<Stroke> ignored;
-	double x = 0.0;
-	for (const char c : text)
-	{
-		x += addGlyph(formOf(c), 0.0, ignored) + kSpacing;
-	}
-	return std::max(0.0, x - kSpacing) * kUnit;
 }
 
 Colour mixed(const Colour& a, const Colour& b, double share_of_b)

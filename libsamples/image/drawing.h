@@ -55,13 +55,13 @@ struct Shape
 {
 	ShapeKind kind = ShapeKind::polygon;
 	std::vector<glm::dvec2> points; // pixels, y down
-	Colour fill;
-	Colour stroke;
+	Colour fill{};
+	Colour stroke{};
 	double stroke_width = 0.0; // pixels
 	double radius = 0.0;       // circle: pixels
 	double size = 0.0;         // text: font size in pixels
 	Anchor anchor = Anchor::start;
-	std::string text; // pixel output supports lower-case letters, digits and ". , : - + % ( ) / = _"
+	std::string text{}; // pixel output supports lower-case letters, digits and ". , : - + % ( ) / = _"
 };
 
 struct Drawing
@@ -100,16 +100,5 @@ Drawing patternPicture(const Pattern& pattern, const Recipe* recipe, const Quali
 
 // All variants at their positions in the window.
 Drawing tilePicture(const PatternTile& tile, const TileQuality& quality);
-
-// Strokes of a small plain font, so that pictures need no font file and look the same everywhere.
-
-using Stroke = std::vector<glm::dvec2>; // a polyline; a single point is a dot
-
-// Strokes of a line of text with its baseline starting at (0, 0), y down, for a font size of 1 (capital height about 0.7). Letters
-// are drawn as lower case; unsupported characters are blank.
-std::vector<Stroke> strokesOf(std::string_view text);
-
-// Width of the text at font size 1.
-double strokeWidthOf(std::string_view text);
 
 } // namespace nook

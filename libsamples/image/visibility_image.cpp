@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/visibility_image.h"
 
-#include "core/error.h"
 #include "core/math.h"
+#include "core/words.h"
 #include "pattern/filter_band.h"
 
 #include <glm/geometric.hpp>
@@ -16,19 +16,17 @@ namespace nook
 namespace
 {
 
-std::string listed(const Image& image)
+// Both have path, width_px and height_px.
+template <class Picture> void requireSameSize(const Picture& test, const Picture& reference)
 {
-	std::string names;
-	for (const std::string& channel : image.channels)
+	const auto sizeText = [](const Picture& picture)
 	{
-		names += (names.empty() ? "" : ", ") + channel;
+		return std::to_string(picture.width_px) + "x" + std::to_string(picture.height_px) + " pixels";
+	};
+	if (test.width_px != reference.width_px || test.height_px != reference.height_px)
+	{
+		refuseInput(test.path + ": size", sizeText(test), sizeText(reference) + " as " + reference.path);
 	}
-	return names;
-}
-
-std::string sizeText(int width_px, int height_px)
-{
-	return std::to_string(width_px) + "x" + std::to_string(height_px) + " pixels";
 }
 
 bool isGray(const Image& image, int r, int g, int b)
@@ -56,8 +54,7 @@ Choice chosen(const Image& image, const std::string& path, const std::string& wa
 		const int index = image.channel(wanted);
 		if (index < 0)
 		{
-			throw Error(ExitCode::invalid_input,
-						path + ": channels: found " + listed(image) + ", expected " + wanted + " among them");
+			refuseInput(path + ": channels", commaList(image.channels), wanted + " among them");
 		}
 		return {index, wanted};
 	}
@@ -82,32 +79,29 @@ Choice chosen(const Image& image, const std::string& path, const std::string& wa
 	{
 		return {r, "R,G,B"};
 	}
-	throw Error(ExitCode::invalid_input,
-				path + ": channels: found " + listed(image) +
-					", expected visibility, a single one, Y, or R, G, B that are all gray (channel picks one)");
+	refuseInput(path + ": channels", commaList(image.channels),
+				"visibility, a single one, Y, or R, G, B that are all gray (channel picks one)");
+}
+
+std::string pixelText(const Image& image, std::size_t pixel)
+{
+	const auto width = static_cast<std::size_t>(image.width_px);
+	return ", pixel " + std::to_string(pixel % width) + "," + std::to_string(pixel / width);
 }
 
 std::vector<float> finiteValues(const Image& image, const std::string& path, const Choice& choice)
 {
-	const std::size_t pixels = image.values.size() / image.channels.size();
-	std::vector<float> values(pixels);
-	for (std::size_t i = 0; i < pixels; ++i)
+	std::vector<float> values(image.values.size() / image.channels.size());
+	for (std::size_t i = 0; i < values.size(); ++i)
 	{
 		values[i] = image.at(i, choice.index);
 		if (!std::isfinite(values[i]))
 		{
-			const auto width = static_cast<std::size_t>(image.width_px);
-			throw Error(ExitCode::invalid_input, path + ": channel " + choice.name + ", pixel " + std::to_string(i % width) + "," +
-													 std::to_string(i / width) + ": found " +
-													 (std::isnan(values[i]) ? "NaN" : "infinity") + ", expected a finite number");
+			refuseInput(path + ": channel " + choice.name + pixelText(image, i), std::isnan(values[i]) ? "NaN" : "infinity",
+						"a finite number");
 		}
 	}
 	return values;
-}
-
-std::string sizeText(const BentImage& image)
-{
-	return std::to_string(image.width_px) + "x" + std::to_string(image.height_px) + " pixels";
 }
 
 } // namespace
@@ -125,12 +119,7 @@ VisibilityImage visibilityOf(const Image& image, const std::string& path, const 
 
 void checkSameSize(const VisibilityImage& test, const VisibilityImage& reference)
 {
-	if (test.width_px != reference.width_px || test.height_px != reference.height_px)
-	{
-		throw Error(ExitCode::invalid_input, test.path + ": size: found " + sizeText(test.width_px, test.height_px) +
-												 ", expected " + sizeText(reference.width_px, reference.height_px) + " as " +
-												 reference.path);
-	}
+	requireSameSize(test, reference);
 }
 
 std::optional<double> ownUncertainty(const VisibilityImage& image, std::span<const uint8_t> counted)
@@ -163,31 +152,18 @@ BentImage bentOf(const Image& image, const std::string& path)
 			const double length = glm::length(way);
 			if (!std::isfinite(length))
 			{
-				const auto width = static_cast<std::size_t>(image.width_px);
-				throw Error(ExitCode::invalid_input, path + ": channels " + name + ".X to Z, pixel " + std::to_string(i % width) +
-														 "," + std::to_string(i / width) +
-														 ": found no direction, expected finite numbers");
+				refuseInput(path + ": channels " + name + ".X to Z" + pixelText(image, i), "no direction", "finite numbers");
 			}
 			result.bent.push_back(length > 0.0 ? way / length : way);
 		}
 		return result;
 	}
-	std::string names;
-	for (const std::string& channel : image.channels)
-	{
-		names += (names.empty() ? "" : ", ") + channel;
-	}
-	throw Error(ExitCode::invalid_input,
-				path + ": channels: found " + names + ", expected bent.X, bent.Y and bent.Z, or N.X, N.Y and N.Z");
+	refuseInput(path + ": channels", commaList(image.channels), "bent.X, bent.Y and bent.Z, or N.X, N.Y and N.Z");
 }
 
 BentAngles anglesBetween(const BentImage& test, const BentImage& reference, std::span<const uint8_t> counted)
 {
-	if (test.width_px != reference.width_px || test.height_px != reference.height_px)
-	{
-		throw Error(ExitCode::invalid_input,
-					test.path + ": size: found " + sizeText(test) + ", expected " + sizeText(reference) + " as " + reference.path);
-	}
+	requireSameSize(test, reference);
 	BentAngles result;
 	std::vector<double> angles;
 	double sum = 0.0;
@@ -196,7 +172,7 @@ BentAngles anglesBetween(const BentImage& test, const BentImage& reference, std:
 	{
 		const glm::dvec3& a = test.bent[i];
 		const glm::dvec3& b = reference.bent[i];
-		if ((!counted.empty() && counted[i] == 0) || a == glm::dvec3(0.0) || b == glm::dvec3(0.0))
+		if (!counts(counted, i) || a == glm::dvec3(0.0) || b == glm::dvec3(0.0))
 		{
 			continue;
 		}
@@ -214,8 +190,7 @@ BentAngles anglesBetween(const BentImage& test, const BentImage& reference, std:
 	}
 	if (angles.empty())
 	{
-		throw Error(ExitCode::invalid_input,
-					test.path + ": found no direction where " + reference.path + " has one, expected some");
+		refuseInput(test.path, "no direction where " + reference.path + " has one", "some");
 	}
 	result.pixels = angles.size();
 	const auto count = static_cast<double>(angles.size());

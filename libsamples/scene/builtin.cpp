@@ -1,114 +1,74 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/builtin.h"
 
-#include "core/error.h"
 #include "core/math.h"
+#include "core/words.h"
 #include "scene/builtin_shapes.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
-#include <optional>
-#include <string>
-#include <utility>
+#include <iterator>
 
 namespace nook
 {
 namespace
 {
 
-constexpr std::array<std::string_view, 7> kNames = {"cornell", "courtyard", "suburb", "foliage", "heightfield", "cave", "nulls"};
-
-[[noreturn]] void refuseName(std::string_view name)
-{
-	std::string listed;
-	for (const std::string_view known : kNames)
-	{
-		listed += std::string(listed.empty() ? "" : ", ") + std::string(known);
-	}
-	throw Error(ExitCode::usage,
-				"builtin: found '" + std::string(name) + "', expected one of " + listed + ", heightfield:N or cave:N");
-}
-
-// A level with a selectable number of triangles: "heightfield:N".
-struct SizedLevel
+// A level, whose number of triangles may be selectable: "heightfield:N".
+struct Builtin
 {
 	std::string_view name;
-	Level (*make)(std::size_t triangles);
-	std::size_t triangles; // default
-	std::size_t least;
-	std::size_t most;
+	Level (*make)() = nullptr;
+	Level (*make_sized)(std::size_t triangles) = nullptr;
+	std::size_t triangles = 0; // default
+	std::size_t least = 0;
+	std::size_t most = 0;
 };
 
-constexpr std::array<SizedLevel, 2> kSized = {
-	{{"heightfield", makeHeightfield, kDefaultHeightfieldTriangles, 2, kMaxHeightfieldTriangles},
-	 {"cave", makeCave, kDefaultCaveTriangles, kMinCaveTriangles, kMaxCaveTriangles}}};
+constexpr std::array<Builtin, 7> kBuiltins{
+	{{"cornell", makeCornell},
+	 {"courtyard", makeCourtyard},
+	 {"suburb", makeSuburb},
+	 {"foliage", makeFoliage},
+	 {"heightfield", nullptr, makeHeightfield, kDefaultHeightfieldTriangles, 2, kMaxHeightfieldTriangles},
+	 {"cave", nullptr, makeCave, kDefaultCaveTriangles, kMinCaveTriangles, kMaxCaveTriangles},
+	 {"nulls", makeNulls}}};
 
-std::size_t triangleCount(std::string_view text, const SizedLevel& level)
+std::size_t triangleCount(std::string_view text, const Builtin& level)
 {
 	std::size_t count = 0;
 	const std::from_chars_result result = std::from_chars(text.data(), text.data() + text.size(), count);
 	if (result.ec != std::errc{} || result.ptr != text.data() + text.size() || count < level.least || count > level.most)
 	{
-		throw Error(ExitCode::usage, "builtin:" + std::string(level.name) + ": found '" + std::string(text) + "', expected " +
-										 std::to_string(level.least) + " to " + std::to_string(level.most) + " triangles");
+		refuseInput("builtin:" + std::string(level.name), "'" + std::string(text) + "'",
+					std::to_string(level.least) + " to " + std::to_string(level.most) + " triangles", ExitCode::usage);
 	}
 	return count;
 }
 
-std::optional<Level> sizedLevel(std::string_view name)
-{
-	for (const SizedLevel& level : kSized)
-	{
-		if (name == level.name)
-		{
-			return level.make(level.triangles);
-		}
-		if (name.starts_with(level.name) && name.substr(level.name.size()).starts_with(":"))
-		{
-			return level.make(triangleCount(name.substr(level.name.size() + 1), level));
-		}
-	}
-	return std::nullopt;
-}
-
 } // namespace
 
-std::span<const std::string_view> builtinNames()
+std::vector<std::string_view> builtinNames()
 {
-	return kNames;
+	std::vector<std::string_view> names;
+	std::transform(kBuiltins.begin(), kBuiltins.end(), std::back_inserter(names), [](const Builtin& one) { return one.name; });
+	return names;
 }
 
 Level builtinLevel(std::string_view name)
 {
-	Level level;
-	if (name == "cornell")
+	const std::string_view base = name.substr(0, name.find(':'));
+	const auto* const found =
+		std::find_if(kBuiltins.begin(), kBuiltins.end(), [&](const Builtin& one) { return one.name == base; });
+	const bool has_count = base != name;
+	if (found == kBuiltins.end() || (has_count && found->make_sized == nullptr))
 	{
-		level = makeCornell();
+		refuseInput("builtin", "'" + std::string(name) + "'", "one of " + commaList(builtinNames()) + ", heightfield:N or cave:N",
+					ExitCode::usage);
 	}
-	else if (name == "courtyard")
-	{
-		level = makeCourtyard();
-	}
-	else if (name == "suburb")
-	{
-		level = makeSuburb();
-	}
-	else if (name == "foliage")
-	{
-		level = makeFoliage();
-	}
-	else if (name == "nulls")
-	{
-		level = makeNulls();
-	}
-	else if (std::optional<Level> sized = sizedLevel(name))
-	{
-		level = std::move(*sized);
-	}
-	else
-	{
-		refuseName(name);
-	}
+	const std::size_t triangles = has_count ? triangleCount(name.substr(base.size() + 1), *found) : found->triangles;
+	Level level = found->make != nullptr ? found->make() : found->make_sized(triangles);
 	level.name = std::string(kBuiltinPrefix) + std::string(name);
 	return level;
 }
@@ -121,7 +81,6 @@ Level makeCornell()
 	LevelBuilder builder;
 	const uint32_t plaster = builder.addMaterial("plaster");
 	const uint32_t block = builder.addMaterial("block");
-	const Frame world;
 	const double half = 2.78;
 	const double height = 5.48;
 	const double depth = 5.6;
@@ -131,11 +90,11 @@ Level makeCornell()
 	builder.beginMesh("room", plaster);
 	const Contour outside = rectangleOf({-half - wall, -wall}, {half + wall, height + wall});
 	const Contour inside = rectangleOf({-half, 0.0}, {half, height});
-	addExtrusion(builder, world, {outside, holeOf(inside)}, -depth, 0.0);
+	addExtrusion(builder, kWorld, {outside, holeOf(inside)}, -depth, 0.0);
 	builder.beginMesh("back wall", plaster);
-	addBox(builder, world, {-half - wall, -wall, -depth - wall}, {half + wall, height + wall, -depth});
+	addBox(builder, kWorld, {-half - wall, -wall, -depth - wall}, {half + wall, height + wall, -depth});
 	builder.beginMesh("lamp", plaster);
-	addBox(builder, world, {-0.65, height - 0.03, -3.32}, {0.65, height, -2.27});
+	addBox(builder, kWorld, {-0.65, height - 0.03, -3.32}, {0.65, height, -2.27});
 
 	builder.beginMesh("tall block", block);
 	addBox(builder, turnedFrame({-0.92, 0.0, -3.51}, 0.294), {-0.83, 0.0, -0.83}, {0.83, 3.30, 0.83});
@@ -176,17 +135,10 @@ void addFloor(LevelBuilder& builder, const Frame& frame)
 	addBox(builder, frame, {-kHalf, -kThick, -kHalf}, {kHalf, 0.0, kHalf});
 }
 
-Frame placed(double x, double z)
-{
-	Frame frame;
-	frame.at = {x, 0.0, z};
-	return frame;
-}
-
 Frame slopeFrame()
 {
 	const SinCos rise = sinCosOf(kPi / 6.0);
-	Frame frame = placed(300.0, -150.0);
+	Frame frame = frameAt({300.0, 0.0, -150.0});
 	frame.y = {0.0, rise.cos, rise.sin};
 	frame.z = {0.0, -rise.sin, rise.cos};
 	return frame;
@@ -208,7 +160,7 @@ Level makeNulls()
 	const uint32_t plain = builder.addMaterial("plain");
 
 	builder.beginMesh("floor", plain);
-	addFloor(builder, placed(0.0, 0.0));
+	addFloor(builder, kWorld);
 
 	// One solid, so that the foot of the wall is an edge and not a seam.
 	builder.beginMesh("wall", plain);
@@ -220,15 +172,15 @@ Level makeNulls()
 	addExtrusion(builder, sideFrame({300.0, 0.0, 0.0}), {step}, -kHalf, kHalf);
 
 	builder.beginMesh("floor of the sphere", plain);
-	addFloor(builder, placed(0.0, -150.0));
+	addFloor(builder, frameAt({0.0, 0.0, -150.0}));
 	builder.beginMesh("sphere", plain);
 	addSphere(builder, {0.0, 1.0, -150.0}, 1.0, 192);
 
 	builder.beginMesh("floor of the disk", plain);
-	addFloor(builder, placed(150.0, -150.0));
+	addFloor(builder, frameAt({150.0, 0.0, -150.0}));
 	builder.beginMesh("disk", plain);
 	const std::array<glm::dvec2, 4> disk = {{{0.0, 1.0}, {1.0, 1.0}, {1.0, 1.02}, {0.0, 1.02}}};
-	addLathe(builder, placed(150.0, -150.0), disk, 1024);
+	addLathe(builder, frameAt({150.0, 0.0, -150.0}), disk, 1024);
 
 	builder.beginMesh("slope", plain);
 	addFloor(builder, slopeFrame());

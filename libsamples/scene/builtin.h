@@ -5,9 +5,8 @@
 #include "scene/level.h"
 
 #include <cstddef>
-#include <span>
-#include <string>
 #include <string_view>
+#include <vector>
 
 namespace nook
 {
@@ -15,7 +14,7 @@ namespace nook
 inline constexpr std::string_view kBuiltinPrefix = "builtin:";
 
 // "cornell", "courtyard", …: valid names after the prefix.
-std::span<const std::string_view> builtinNames();
+std::vector<std::string_view> builtinNames();
 
 // `name` without the prefix; "heightfield:1000000" and "cave:20000" ask for at least that many triangles. Throws Error (usage) for
 // another name.

@@ -194,8 +194,7 @@ void addPlatform(LevelBuilder& builder)
 
 void addWell(LevelBuilder& builder, glm::dvec3 foot)
 {
-	Frame frame;
-	frame.at = foot;
+	const Frame frame = frameAt(foot);
 	const glm::dvec2 step[] = {{0.0, -0.02}, {1.75, -0.02}, {1.75, 0.16}, {1.55, 0.16}, {1.55, 0.32}, {0.0, 0.32}};
 	addLathe(builder, frame, step, 32);
 	const glm::dvec2 shaft[] = {{0.72, 0.3}, {1.05, 0.3}, {1.05, 1.05}, {1.13, 1.07}, {1.13, 1.2}, {0.68, 1.2}, {0.68, 1.07}};
@@ -207,9 +206,7 @@ void addWell(LevelBuilder& builder, glm::dvec3 foot)
 	addCylinder(builder, foot + glm::dvec3(-1.1, 2.55, 0.0), foot + glm::dvec3(1.1, 2.55, 0.0), 0.09, 16);
 	addCylinder(builder, foot + glm::dvec3(0.1, 1.75, 0.1), foot + glm::dvec3(0.1, 2.55, 0.1), 0.012, 6);
 	const glm::dvec2 bucket[] = {{0.0, 1.45}, {0.12, 1.45}, {0.16, 1.75}, {0.14, 1.75}, {0.105, 1.48}, {0.0, 1.48}};
-	Frame below = frame;
-	below.at += glm::dvec3(0.1, 0.0, 0.1);
-	addLathe(builder, below, bucket, 16);
+	addLathe(builder, frameAt(foot + glm::dvec3(0.1, 0.0, 0.1)), bucket, 16);
 	const Contour roof = {{-1.0, 2.75}, {0.0, 3.35}, {1.0, 2.75}, {1.0, 2.83}, {0.0, 3.45}, {-1.0, 2.83}};
 	addExtrusion(builder, sideFrame(foot), {roof}, -1.35, 1.35);
 }

@@ -7,8 +7,8 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
 
 namespace nook
@@ -43,15 +43,14 @@ void addStoneWall(LevelBuilder& builder, Random& random, glm::dvec3 from, double
 // A high wall at the back, with piers, a plinth and a coping.
 void addBoundary(LevelBuilder& builder)
 {
-	const Frame world;
-	addBox(builder, world, {-18.0, -0.1, -12.4}, {18.0, 4.6, -12.0});
-	addBox(builder, world, {-17.99, -0.12, -12.05}, {17.99, 0.5, -11.92});
-	addBox(builder, world, {-18.05, 4.6, -12.5}, {18.05, 4.72, -11.85});
+	addBox(builder, kWorld, {-18.0, -0.1, -12.4}, {18.0, 4.6, -12.0});
+	addBox(builder, kWorld, {-17.99, -0.12, -12.05}, {17.99, 0.5, -11.92});
+	addBox(builder, kWorld, {-18.05, 4.6, -12.5}, {18.05, 4.72, -11.85});
 	for (int i = 0; i <= 8; ++i)
 	{
 		const double x = -17.6 + 4.4 * i;
-		addBox(builder, world, {x - 0.3, -0.1, -12.2}, {x + 0.3, 4.85, -11.75});
-		addBox(builder, world, {x - 0.38, 4.85, -12.45}, {x + 0.38, 4.98, -11.67});
+		addBox(builder, kWorld, {x - 0.3, -0.1, -12.2}, {x + 0.3, 4.85, -11.75});
+		addBox(builder, kWorld, {x - 0.38, 4.85, -12.45}, {x + 0.38, 4.98, -11.67});
 		addSphere(builder, {x, 5.2, -12.06}, 0.26, 18);
 	}
 }
@@ -121,16 +120,15 @@ bool isInside(const Blade& blade, glm::dvec2 p)
 	return std::fabs(across) <= blade.half_width * root * (1.0 - t) * (1.0 / 0.385);
 }
 
-bool isInsideAny(const std::vector<Blade>& blades, glm::dvec2 p)
+Mask maskOf(const std::string& name, int size, const std::vector<Blade>& blades)
 {
-	for (const Blade& blade : blades)
+	const auto is_inside = [&](glm::dvec2 p)
 	{
-		if (isInside(blade, p))
-		{
-			return true;
-		}
-	}
-	return false;
+		return std::any_of(blades.begin(), blades.end(), [p](const Blade& blade) { return isInside(blade, p); });
+	};
+	Mask mask = drawMask(name, size, is_inside);
+	mask.wrap_u = mask.wrap_v = Wrap::clamp;
+	return mask;
 }
 
 glm::dvec2 directionOf(double angle_rad)
@@ -228,10 +226,7 @@ Mask leafMask()
 	addTwig(blades, foot, 0.5 * kPi, 0.70, 5);
 	addTwig(blades, foot + glm::dvec2(0.0, 0.16), 0.5 * kPi + 0.75, 0.38, 3);
 	addTwig(blades, foot + glm::dvec2(0.0, 0.24), 0.5 * kPi - 0.80, 0.38, 3);
-	Mask mask = drawMask("leaves", 192, [&](glm::dvec2 p) { return isInsideAny(blades, p); });
-	mask.wrap_u = Wrap::clamp;
-	mask.wrap_v = Wrap::clamp;
-	return mask;
+	return maskOf("leaves", 192, blades);
 }
 
 Mask grassMask()
@@ -242,17 +237,9 @@ Mask grassMask()
 		const double x = 0.08 + 0.84 * radicalInverse(i + 1, 2);
 		const double height = 0.45 + 0.5 * radicalInverse(i + 1, 3);
 		const double lean = 0.5 * (radicalInverse(i + 1, 5) - 0.5);
-		blades.push_back({{x, -0.25},
-						  {0.04 + 0.92 * (x + lean * 0.6 < 0.0   ? 0.0
-										  : x + lean * 0.6 > 1.0 ? 1.0
-																 : x + lean * 0.6),
-						   height},
-						  0.022});
+		blades.push_back({{x, -0.25}, {0.04 + 0.92 * std::clamp(x + lean * 0.6, 0.0, 1.0), height}, 0.022});
 	}
-	Mask mask = drawMask("grass", 128, [&](glm::dvec2 p) { return isInsideAny(blades, p); });
-	mask.wrap_u = Wrap::clamp;
-	mask.wrap_v = Wrap::clamp;
-	return mask;
+	return maskOf("grass", 128, blades);
 }
 
 Mask chainLinkMask(double width)

@@ -15,14 +15,9 @@
 namespace nook
 {
 
-// Triangulates a polygon with holes.
-
+// An outline, counter-clockwise, or a hole in one, clockwise. Contours of a polygon must not touch each other or themselves, nor
+// contain three consecutive collinear points.
 using Contour = std::vector<glm::dvec2>;
-
-// Indices into the points of all contours in a row; every triangle is counter-clockwise. The first contour is the outline,
-// counter-clockwise; the others are holes, clockwise. Contours must not touch each other or themselves, nor contain three
-// consecutive collinear points.
-std::vector<glm::uvec3> triangulateContours(const std::vector<Contour>& contours);
 
 // Points of an arc including both ends; clockwise if `to_rad` is smaller.
 Contour arcOf(glm::dvec2 centre, double radius, double from_rad, double to_rad, int steps);
@@ -98,7 +93,7 @@ private:
 
 void addBox(LevelBuilder& builder, const Frame& frame, glm::dvec3 least, glm::dvec3 most);
 
-// Extrudes the polygon in the frame's x and y (see triangulateContours) from z = from to z = to, from < to. Edges of less than 40°
+// Extrudes the polygon in the frame's x and y from z = from to z = to, from < to. Edges of less than 40°
 // are smooth.
 void addExtrusion(LevelBuilder& builder, const Frame& frame, const std::vector<Contour>& contours, double from, double to);
 

@@ -7,7 +7,6 @@
 #include "scene/builtin_shapes.h"
 
 #include <array>
-#include <cmath>
 
 namespace nook
 {
@@ -21,6 +20,12 @@ Frame moved(Frame frame, glm::dvec3 by)
 	return frame;
 }
 
+// For extrusions along the frame's x: x becomes −z, z becomes x.
+Frame sideOf(const Frame& frame)
+{
+	return {frame.at, -frame.z, frame.y, frame.x};
+}
+
 void addRing(LevelBuilder& builder, const Frame& frame, glm::dvec2 least, glm::dvec2 most, double width, double from, double to)
 {
 	addExtrusion(builder, frame, {rectangleOf(least, most), holeOf(rectangleOf(least + width, most - width))}, from, to);
@@ -29,8 +34,7 @@ void addRing(LevelBuilder& builder, const Frame& frame, glm::dvec2 least, glm::d
 // 0.92 m wide, 0.36 m deep, 0.72 m high, front towards +z: 78 fins, 1.5 mm thick, 10 mm apart.
 void addAirConditioner(LevelBuilder& builder, glm::dvec3 foot)
 {
-	Frame frame;
-	frame.at = foot;
+	const Frame frame = frameAt(foot);
 	const double half = 0.46;
 	const double top = 0.80;
 	addBox(builder, frame, {-0.60, -0.05, -0.35}, {0.60, 0.06, 0.35}); // slab
@@ -74,17 +78,14 @@ void addAirConditioner(LevelBuilder& builder, glm::dvec3 foot)
 	// Pipes to the house.
 	const std::array<glm::dvec3, 4> way = {frame.point({-0.44, 0.30, -0.08}), frame.point({-0.50, 0.30, -0.09}),
 										   frame.point({-0.54, 0.33, -0.14}), frame.point({-0.54, 0.36, -0.60})};
-	const std::array<double, 4> radii = {0.02, 0.02, 0.02, 0.02};
-	addTube(builder, way, radii, 8);
+	addTube(builder, way, std::vector<double>(way.size(), 0.02), 8);
 }
 
 // On two wheels, 1.05 m high, front towards +z.
 void addBin(LevelBuilder& builder, const Frame& frame)
 {
 	// Side view: wider at the top.
-	Frame side = frame;
-	side.x = -frame.z;
-	side.z = frame.x;
+	const Frame side = sideOf(frame);
 	const Contour body = {{-0.22, 0.05}, {0.20, 0.05}, {0.30, 0.95}, {-0.32, 0.95}};
 	addExtrusion(builder, side, {body}, -0.27, 0.27);
 	const Contour rim = {{-0.36, 0.92}, {0.34, 0.92}, {0.34, 0.96}, {-0.36, 0.96}};
@@ -179,9 +180,7 @@ void addDoor(LevelBuilder& builder, const Frame& frame, glm::dvec2 least, glm::d
 void addTiledRoof(LevelBuilder& builder, const Frame& frame, double half_span, double eave, double ridge, double from_x,
 				  double to_x)
 {
-	Frame side = frame;
-	side.x = -frame.z;
-	side.z = frame.x;
+	const Frame side = sideOf(frame);
 	const double thick = 0.14;
 	const double step = 0.03; // overhang of each course
 	const int courses = 16;
@@ -213,9 +212,7 @@ void addTiledRoof(LevelBuilder& builder, const Frame& frame, double half_span, d
 // A half-round gutter below an eave, with brackets, along x.
 void addGutter(LevelBuilder& builder, const Frame& frame, double from_x, double to_x)
 {
-	Frame side = frame;
-	side.x = -frame.z;
-	side.z = frame.x;
+	const Frame side = sideOf(frame);
 	Contour gutter = arcOf({0.0, 0.0}, 0.07, kPi, 2.0 * kPi, 10);
 	append(gutter, arcOf({0.0, 0.0}, 0.063, 2.0 * kPi, kPi, 10));
 	addExtrusion(builder, side, {gutter}, from_x, to_x);
@@ -304,8 +301,7 @@ void addRoof(LevelBuilder& builder)
 	// Downpipe: out of the gutter, back to the wall, down.
 	const std::array<glm::dvec3, 6> way = {
 		{{3.6, 2.97, 0.64}, {3.6, 2.85, 0.62}, {3.6, 2.62, 0.13}, {3.6, 2.50, 0.08}, {3.6, 0.30, 0.08}, {3.6, 0.12, 0.22}}};
-	const std::array<double, 6> radii = {0.035, 0.035, 0.035, 0.035, 0.035, 0.035};
-	addTube(builder, way, radii, 12);
+	addTube(builder, way, std::vector<double>(way.size(), 0.035), 12);
 	for (const double y : {0.8, 1.6, 2.4})
 	{
 		addBox(builder, kWorld, {3.555, y, -0.02}, {3.645, y + 0.03, 0.125});
@@ -428,10 +424,7 @@ void addNeighbours(LevelBuilder& builder)
 	{
 		addBlindWindow(builder, {{-13.0, 0.0, z}, {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}, {1.0, 0.0, 0.0}}, {-0.6, 1.0}, {0.6, 2.3});
 	}
-	Frame ridge = frameAt({-16.5, 0.0, -4.0});
-	ridge.x = {0.0, 0.0, -1.0};
-	ridge.z = {1.0, 0.0, 0.0};
-	addTiledRoof(builder, ridge, 4.2, 2.75, 5.2, -5.4, 5.4);
+	addTiledRoof(builder, sideFrame({-16.5, 0.0, -4.0}), 4.2, 2.75, 5.2, -5.4, 5.4);
 	addBox(builder, kWorld, {11.0, -0.1, -14.0}, {18.0, 6.0, 4.0});
 	addBox(builder, kWorld, {10.7, 6.0, -14.3}, {18.3, 6.3, 4.3});
 	addBox(builder, kWorld, {10.93, -0.1, -14.1}, {11.1, 0.5, 4.1});

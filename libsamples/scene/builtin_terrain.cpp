@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
 namespace nook
@@ -198,21 +197,12 @@ void addUnderside(LevelBuilder& builder, const Grid& grid, std::size_t cells)
 {
 	// Around the rim, counter-clockwise from above.
 	std::vector<glm::dvec3> rim;
-	for (std::size_t i = 0; i < cells; ++i)
+	for (std::size_t k = 0; k < 4 * cells; ++k)
 	{
-		rim.push_back(grid.position(0, i));
-	}
-	for (std::size_t i = 0; i < cells; ++i)
-	{
-		rim.push_back(grid.position(i, cells));
-	}
-	for (std::size_t i = cells; i > 0; --i)
-	{
-		rim.push_back(grid.position(cells, i));
-	}
-	for (std::size_t i = cells; i > 0; --i)
-	{
-		rim.push_back(grid.position(i, 0));
+		const std::size_t i = k % cells;
+		const std::array<glm::dvec3, 4> sides{grid.position(0, i), grid.position(i, cells), grid.position(cells, cells - i),
+											  grid.position(cells - i, 0)};
+		rim.push_back(sides[k / cells]);
 	}
 	const uint32_t middle = builder.addVertex({0.0, kBottom, 0.0}, {0.0, -1.0, 0.0}, {0.0, 0.0});
 	for (std::size_t i = 0; i < rim.size(); ++i)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/camera.h"
 
-#include "core/error.h"
 #include "core/math.h"
+#include "core/words.h"
 #include "scene/camera_choice.h"
 
 #include <glm/geometric.hpp>
@@ -11,6 +11,7 @@
 #include <glm/vec4.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <filesystem>
@@ -27,11 +28,13 @@ glm::dvec4 rowOf(const glm::dmat4& m, int row)
 
 [[noreturn]] void refuseCamera(const std::string& found)
 {
-	throw Error(ExitCode::invalid_input,
-				"projection: found " + found + ", expected a perspective or parallel projection, column by column, along -z");
+	refuseInput("projection", found, "a perspective or parallel projection, column by column, along -z");
 }
 
 constexpr double kDefaultFov = 60.0; // degrees
+
+// The corners of a picture and its middle, in widths and heights.
+constexpr std::array<glm::dvec2, 5> kChecked{{{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}, {0.5, 0.5}}};
 
 // Rotation and translation: lengths stay metres, and nothing is mirrored. Engines print 32-bit numbers, hence the tolerance.
 bool isRigid(const glm::dmat4& m)
@@ -59,7 +62,7 @@ Lens lensOf(const CameraOptions& options, const LevelCamera& camera)
 	{
 		if (lens.orthographic)
 		{
-			throw Error(ExitCode::usage, "--fov: found an orthographic camera '" + camera.name + "', expected a perspective one");
+			refuseInput("--fov", "an orthographic camera '" + camera.name + "'", "a perspective one", ExitCode::usage);
 		}
 		lens.fov_y_rad = *options.fov_y_deg * (kPi / 180.0);
 	}
@@ -68,8 +71,7 @@ Lens lensOf(const CameraOptions& options, const LevelCamera& camera)
 		lens.near_m = *options.near_m;
 		if (!(lens.near_m < lens.far_m))
 		{
-			throw Error(ExitCode::usage,
-						"--near: found a plane beyond the far one of camera '" + camera.name + "', expected one before it");
+			refuseInput("--near", "a plane beyond the far one of camera '" + camera.name + "'", "one before it", ExitCode::usage);
 		}
 	}
 	return lens;
@@ -110,15 +112,13 @@ glm::dvec3 checkedEyeOf(const CameraOptions& options, const NamedView& view)
 	const Projector projector(view.view.projection, options.width_px, options.height_px);
 	const glm::dmat4 world_from_camera = glm::inverse(view.view.camera_from_world);
 	glm::dvec3 eye(0.0);
-	for (const glm::dvec2 at :
-		 {glm::dvec2(0.0, 0.0), glm::dvec2(1.0, 0.0), glm::dvec2(0.0, 1.0), glm::dvec2(1.0, 1.0), glm::dvec2(0.5, 0.5)})
+	for (const glm::dvec2 at : kChecked)
 	{
 		const ViewLine line = projector.lineOf({at.x * options.width_px, at.y * options.height_px});
 		eye = glm::dvec3(world_from_camera * glm::dvec4(line.at, 1.0));
 		if (!(std::max({std::fabs(eye.x), std::fabs(eye.y), std::fabs(eye.z)}) <= kFarthest_m))
 		{
-			throw Error(ExitCode::invalid_input,
-						"camera '" + view.name + "': found rays from beyond 1e15 m, expected them to begin nearer");
+			refuseInput("camera '" + view.name + "'", "rays from beyond 1e15 m", "them to begin nearer");
 		}
 	}
 	return eye; // the last: the middle
@@ -183,10 +183,9 @@ Projector::Projector(const glm::dmat4& projection, int width_px, int height_px)
 	{
 		refuseCamera("a singular matrix");
 	}
-	for (const glm::dvec2 corner :
-		 {glm::dvec2(0.0, 0.0), glm::dvec2(1.0, 0.0), glm::dvec2(0.0, 1.0), glm::dvec2(1.0, 1.0), glm::dvec2(0.5, 0.5)})
+	for (const glm::dvec2 at : kChecked)
 	{
-		const ViewLine line = lineOf({corner.x * m_width_px, corner.y * m_height_px});
+		const ViewLine line = lineOf({at.x * m_width_px, at.y * m_height_px});
 		// Directions are stored as 32-bit numbers whose squares must not overflow; no picture is 1e9 times as wide as deep.
 		if (!(glm::dot(line.along, line.along) <= 1e18) || !std::isfinite(glm::dot(line.at, line.at)))
 		{
@@ -231,13 +230,14 @@ void checkCameras(const CameraOptions& options)
 {
 	if (options.eye && !(glm::length(*options.eye - *options.target) > 0.0))
 	{
-		throw Error(ExitCode::usage, "--target: found the eye itself, expected another point");
+		refuseInput("--target", "the eye itself", "another point", ExitCode::usage);
 	}
 	if (options.camera_from_world && !isRigid(*options.camera_from_world))
 	{
-		throw Error(ExitCode::usage,
-					"--world-to-camera: found a matrix that scales, shears, mirrors or projects, expected a rotation "
-					"and a translation, column by column");
+		refuseInput("--world-to-camera", "a matrix that scales, shears, mirrors or projects",
+					"a rotation "
+					"and a translation, column by column",
+					ExitCode::usage);
 	}
 	if (options.projection)
 	{

@@ -26,24 +26,21 @@
 // bathroom, a city quarter, a dragon, a space shuttle and a tree.
 #include "scene/camera_choice.h"
 
-#include "core/error.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/random.h"
-#include "scene/tracer.h"
+#include "core/words.h"
+#include "scene/ray_triangle.h"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/mat4x4.hpp>
-#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
-#include <vector>
 
 namespace nook
 {
@@ -65,15 +62,6 @@ struct CameraCandidate
 	double worth = 1.0;             // weight of the position: lower where people rarely stand
 	bool outside = false;           // not a place where a person could stand
 };
-
-// Kinds of positions; each is used if the previous ones show too little.
-enum class Places
-{
-	standing, // above floors; empty if there are too few, or for objects below 2 m
-	around,   // on a sphere around the level
-	close,    // in front of its largest triangles: finds thin wires that a small picture of the whole misses
-};
-inline constexpr std::array<Places, 3> kAllPlaces{Places::standing, Places::around, Places::close};
 
 constexpr unsigned kPlaces = 600;         // positions in plan where floors are searched
 constexpr std::size_t kMaxStands = 120;   // evenly chosen from the floors found
@@ -113,9 +101,7 @@ std::vector<glm::dvec3> floorsBelow(const Tracer& tracer, glm::dvec3 from, doubl
 			break;
 		}
 		const glm::dvec3 at = from - kUp * hit.distance;
-		const glm::uvec3 corners = level.triangles[hit.triangle];
-		const glm::dvec3 a = level.positions[corners.x];
-		const glm::dvec3 across = glm::cross(level.positions[corners.y] - a, level.positions[corners.z] - a);
+		const glm::dvec3 across = twiceAreaOf(level, hit.triangle);
 		const Material& material = level.material_list[level.materials[hit.triangle]];
 		const bool bears = material.alpha_mode == AlphaMode::opaque && (hit.front || material.two_sided); // nobody stands on leaves
 		if (bears && std::fabs(across.y) > 0.7 * glm::length(across))
@@ -217,8 +203,18 @@ void addViewsAround(std::vector<CameraCandidate>& candidates, const CameraCandid
 	}
 }
 
-std::vector<CameraCandidate> standingViews(const Tracer& tracer, const std::vector<CameraCandidate>& eyes)
+// Above floors; none if there are too few, or for objects below 2 m.
+std::vector<CameraCandidate> standingViews(const Tracer& tracer, const Site& site)
 {
+	if (site.diagonal < kLeastLevelDiagonal)
+	{
+		return {};
+	}
+	const std::vector<CameraCandidate> eyes = standingEyes(tracer, site);
+	if (eyes.size() < kMinStands)
+	{
+		return {};
+	}
 	const std::size_t count = std::min(eyes.size(), kMaxStands);
 	std::vector<CameraCandidate> candidates;
 	for (std::size_t i = 0; i < count; ++i)
@@ -242,7 +238,7 @@ std::vector<CameraCandidate> standingViews(const Tracer& tracer, const std::vect
 }
 
 // From outside. The box's corners lie within the picture, or for the nearer half somewhat outside of it.
-std::vector<CameraCandidate> viewsFromOutside(const Site& site)
+std::vector<CameraCandidate> viewsFromOutside(const Tracer& /*tracer*/, const Site& site)
 {
 	const glm::dvec3 centre = 0.5 * (site.bounds.least + site.bounds.most);
 	const glm::dvec3 half = 0.5 * (site.bounds.most - site.bounds.least);
@@ -273,20 +269,15 @@ std::vector<CameraCandidate> viewsFromOutside(const Site& site)
 	return candidates;
 }
 
-// So close that the circle inscribed in each triangle fills half of the picture's height.
-std::vector<CameraCandidate> closeViews(const Tracer& tracer)
+// In front of the largest triangles: finds thin wires that a small picture of the whole misses. So close that the circle inscribed
+// in each triangle fills half of the picture's height.
+std::vector<CameraCandidate> closeViews(const Tracer& tracer, const Site& /*site*/)
 {
 	const Level& level = tracer.level();
 	std::vector<std::pair<double, std::size_t>> largest; // negative area, and the triangle
-	const auto across = [&](std::size_t i)
-	{
-		const glm::uvec3& t = level.triangles[i];
-		const glm::dvec3 a = level.positions[t.x];
-		return glm::cross(level.positions[t.y] - a, level.positions[t.z] - a);
-	};
 	for (std::size_t i = 0; i < level.triangles.size(); ++i)
 	{
-		largest.emplace_back(-glm::length(across(i)), i);
+		largest.emplace_back(-glm::length(twiceAreaOf(level, i)), i);
 	}
 	const std::size_t count = std::min(largest.size(), kCloseViews);
 	std::partial_sort(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(count), largest.end());
@@ -299,7 +290,7 @@ std::vector<CameraCandidate> closeViews(const Tracer& tracer)
 		const glm::dvec3 c = level.positions[t.z];
 		const double sides = glm::distance(a, b) + glm::distance(b, c) + glm::distance(c, a);
 		const glm::dvec3 centre = (glm::distance(b, c) * a + glm::distance(c, a) * b + glm::distance(a, b) * c) / sides;
-		const glm::dvec3 normal = across(largest[i].second) / -largest[i].first;
+		const glm::dvec3 normal = twiceAreaOf(level, largest[i].second) / -largest[i].first;
 		const double distance = std::max(-3.5 * largest[i].first / sides, 4.0 * tracer.error());
 		candidates.push_back({centre + distance * normal, -normal, 0.5 * distance, 1.0, true});
 	}
@@ -328,24 +319,6 @@ glm::dmat4 worldFromCamera(const CameraCandidate& candidate)
 	return world;
 }
 
-std::vector<CameraCandidate> cameraCandidates(const Tracer& tracer, const Site& site, Places places)
-{
-	if (places == Places::around)
-	{
-		return viewsFromOutside(site);
-	}
-	if (places == Places::close)
-	{
-		return closeViews(tracer);
-	}
-	if (site.diagonal < kLeastLevelDiagonal)
-	{
-		return {};
-	}
-	const std::vector<CameraCandidate> eyes = standingEyes(tracer, site);
-	return eyes.size() < kMinStands ? std::vector<CameraCandidate>{} : standingViews(tracer, eyes);
-}
-
 constexpr int kColumns = 32;
 constexpr int kRows = 18;
 constexpr double kFovY = kPi / 3.0;
@@ -372,11 +345,7 @@ using Samples = std::array<Sample, kColumns * kRows>;
 // 1 if `used` of the bins are equally filled, 0 if one bin has everything.
 double spreadOf(std::span<const int> bins, double used)
 {
-	int total = 0;
-	for (const int bin : bins)
-	{
-		total += bin;
-	}
+	const int total = std::accumulate(bins.begin(), bins.end(), 0);
 	double entropy = 0.0;
 	for (const int bin : bins)
 	{
@@ -420,9 +389,7 @@ Samples lookAt(const Tracer& tracer, const Site& site, const CameraCandidate& ca
 				continue;
 			}
 			Sample& sample = samples[static_cast<std::size_t>(y * kColumns + x)];
-			const glm::uvec3 corners = level.triangles[hit.triangle];
-			const glm::dvec3 a = level.positions[corners.x];
-			const glm::dvec3 across = glm::cross(level.positions[corners.y] - a, level.positions[corners.z] - a);
+			const glm::dvec3 across = twiceAreaOf(level, hit.triangle);
 			const double area = glm::length(across);
 			sample.depth = std::max(hit.distance, 1e-300); // the direction's z is −1
 			sample.normal = area > 0.0 ? across * ((hit.front ? 1.0 : -1.0) / area) : glm::dvec3(0.0);
@@ -478,19 +445,21 @@ glm::dvec2 edgesOf(const Samples& samples)
 
 // Fraction of the picture that the largest plane fills: samples whose normals agree within about 7°, and whose distances from the
 // origin along them agree within 1 % of the diagonal.
-double largestPlane(const Site& site, const CameraCandidate& candidate, const std::vector<glm::dvec3>& positions,
-					const std::vector<glm::dvec3>& normals)
+double largestPlane(const Site& site, const CameraCandidate& candidate, const Samples& samples)
 {
 	std::vector<std::array<int64_t, 4>> planes;
-	for (std::size_t i = 0; i < positions.size(); ++i)
+	const auto rounded = [](double x)
 	{
-		const glm::dvec3 n = normals[i];
-		const auto rounded = [](double x)
+		return static_cast<int64_t>(std::floor(x + 0.5));
+	};
+	for (const Sample& sample : samples)
+	{
+		if (sample.depth != 0.0)
 		{
-			return static_cast<int64_t>(std::floor(x + 0.5));
-		};
-		planes.push_back({rounded(8.0 * n.x), rounded(8.0 * n.y), rounded(8.0 * n.z),
-						  rounded(glm::dot(n, positions[i] - candidate.eye) * (100.0 / site.diagonal))});
+			const glm::dvec3 n = sample.normal;
+			planes.push_back({rounded(8.0 * n.x), rounded(8.0 * n.y), rounded(8.0 * n.z),
+							  rounded(glm::dot(n, sample.position - candidate.eye) * (100.0 / site.diagonal))});
+		}
 	}
 	std::sort(planes.begin(), planes.end());
 	std::size_t most = 0;
@@ -515,8 +484,6 @@ Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candi
 	int backs = 0;
 	std::array<int, 64> depths{};
 	std::array<int, 27> normals{};
-	std::vector<glm::dvec3> seen_at;
-	std::vector<glm::dvec3> seen_normals;
 	for (const Sample& sample : samples)
 	{
 		if (sample.depth == 0.0)
@@ -537,8 +504,6 @@ Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candi
 		const int bin = 9 * third(sample.normal.x) + 3 * third(sample.normal.y) + third(sample.normal.z);
 		normals[static_cast<std::size_t>(bin)] += 1;
 		sight.cells.push_back(sample.cell);
-		seen_at.push_back(sample.position);
-		seen_normals.push_back(sample.normal);
 	}
 	if (hits == 0)
 	{
@@ -552,7 +517,7 @@ Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candi
 	const glm::dvec2 edges = edgesOf(samples);
 	const double interest = 0.25 * spreadOf(depths, 8.0) + 0.20 * spreadOf(normals, 8.0) + 0.30 * std::min(1.0, edges.x / 0.15) +
 							0.25 * std::min(1.0, edges.y / 0.15);
-	const double plane = largestPlane(site, candidate, seen_at, seen_normals);
+	const double plane = largestPlane(site, candidate, samples);
 	const double varied = std::clamp(1.0 - 0.8 * (plane - 1.0 / 3.0) / (0.75 - 1.0 / 3.0), 0.2, 1.0);
 	sight.score = candidate.worth * seen * clear * clear * clear * facing * varied * interest;
 	if (candidate.outside)
@@ -565,11 +530,11 @@ Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candi
 // Fraction of the cells not yet seen; both lists are sorted.
 double shareOfNew(const std::vector<uint64_t>& cells, const std::vector<uint64_t>& seen)
 {
-	std::size_t known = 0;
-	for (const uint64_t cell : cells)
+	const auto is_known = [&](uint64_t cell)
 	{
-		known += std::binary_search(seen.begin(), seen.end(), cell) ? 1U : 0U;
-	}
+		return std::binary_search(seen.begin(), seen.end(), cell);
+	};
+	const auto known = std::count_if(cells.begin(), cells.end(), is_known);
 	return cells.empty() ? 0.0 : 1.0 - static_cast<double>(known) / static_cast<double>(cells.size());
 }
 
@@ -661,17 +626,17 @@ Verdict verdictOf(const Tracer& tracer, glm::dvec3 from, glm::dvec3 way, double 
 
 const LevelCamera& cameraNamed(const Level& level, std::string_view name)
 {
-	std::string listed;
+	std::vector<std::string> names;
 	for (const LevelCamera& camera : level.cameras)
 	{
 		if (camera.name == name)
 		{
 			return camera;
 		}
-		listed += (listed.empty() ? "" : ", ") + camera.name;
+		names.push_back(camera.name);
 	}
-	throw Error(ExitCode::usage, "camera: found '" + std::string(name) + "', expected " +
-									 (listed.empty() ? "auto:K, as " + level.name + " has no cameras" : listed + " or auto:K"));
+	refuseInput("camera", "'" + std::string(name) + "'",
+				names.empty() ? "auto:K, as " + level.name + " has no cameras" : commaList(names) + " or auto:K", ExitCode::usage);
 }
 
 std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const RunSettings& run)
@@ -681,11 +646,13 @@ std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const Ru
 	std::vector<CameraCandidate> candidates;
 	std::vector<Sight> sights;
 	std::vector<std::size_t> chosen;
-	for (const Places places : kAllPlaces)
+	for (const auto& candidatesOf : {standingViews, viewsFromOutside, closeViews}) // if the previous ones show too little
 	{
-		const std::vector<CameraCandidate> more = chosen.size() < static_cast<std::size_t>(count)
-													  ? cameraCandidates(tracer, site, places)
-													  : std::vector<CameraCandidate>{};
+		if (chosen.size() >= static_cast<std::size_t>(count))
+		{
+			break;
+		}
+		const std::vector<CameraCandidate> more = candidatesOf(tracer, site);
 		if (more.empty())
 		{
 			continue;
@@ -719,9 +686,7 @@ std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const Ru
 	}
 	if (cameras.empty())
 	{
-		throw Error(ExitCode::invalid_input,
-					tracer.level().name +
-						": cameras: found no view that shows anything of it, expected an explicit camera (eye, target)");
+		refuseInput(tracer.level().name + ": cameras", "no view that shows anything of it", "an explicit camera (eye, target)");
 	}
 	return cameras;
 }
@@ -737,8 +702,8 @@ CamerasOfLevel camerasOf(const Tracer& tracer, std::string_view name, int automa
 	CamerasOfLevel found{chooseCameras(tracer, count, run), true};
 	if (found.cameras.size() < static_cast<std::size_t>(count))
 	{
-		throw Error(ExitCode::invalid_input, level.name + ": cameras: found " + std::to_string(found.cameras.size()) +
-												 " views that show something, expected " + std::to_string(count));
+		refuseInput(level.name + ": cameras", std::to_string(found.cameras.size()) + " views that show something",
+					std::to_string(count));
 	}
 	return found;
 }
@@ -765,9 +730,9 @@ void checkOutside(const Tracer& tracer, glm::dvec3 eye, const std::string& name)
 	if (share >= kInsideShare)
 	{
 		const int percent = static_cast<int>(std::floor(100.0 * share));
-		throw Error(ExitCode::invalid_input, tracer.level().name + ": camera '" + name +
-												 "': found it inside a solid (according to " + std::to_string(percent) +
-												 " % of the directions from it), expected it outside (allow-inside permits it)");
+		refuseInput(tracer.level().name + ": camera '" + name + "'",
+					"it inside a solid (according to " + std::to_string(percent) + " % of the directions from it)",
+					"it outside (allow-inside permits it)");
 	}
 }
 

@@ -2,8 +2,8 @@
 // Part of the level worker: decodes meshes of KHR_draco_mesh_compression with Draco.
 #include "scene/mesh_codec.h"
 
-#include "core/error.h"
 #include "core/file.h"
+#include "core/words.h"
 
 #include <draco/compression/decode.h>
 
@@ -17,7 +17,7 @@ namespace
 
 [[noreturn]] void refuse(const std::string& name, const std::string& found, const std::string& expected)
 {
-	throw Error(ExitCode::invalid_input, name + ": KHR_draco_mesh_compression: found " + found + ", expected " + expected);
+	refuseInput(name + ": KHR_draco_mesh_compression", found, expected);
 }
 
 std::unique_ptr<draco::Mesh> meshOf(const std::string& name, const std::vector<char>& coded)

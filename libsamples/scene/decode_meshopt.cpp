@@ -2,8 +2,8 @@
 // Part of the level worker: decodes buffer views of EXT_meshopt_compression with meshoptimizer.
 #include "scene/mesh_codec.h"
 
-#include "core/error.h"
 #include "core/file.h"
+#include "core/words.h"
 
 #include <meshoptimizer.h>
 
@@ -62,10 +62,9 @@ void decodeMeshopt(ValueReader& request, ValueWriter& answer)
 	{
 		if (!decodeView(views[i], coded[i], bytes))
 		{
-			throw Error(ExitCode::invalid_input,
-						name + ": bufferViews[" + std::to_string(views[i].index) +
-							"].extensions.EXT_meshopt_compression: found bytes that do not decode, expected " +
-							std::to_string(views[i].count) + " elements of " + std::to_string(views[i].stride) + " bytes");
+			refuseInput(name + ": bufferViews[" + std::to_string(views[i].index) + "].extensions.EXT_meshopt_compression",
+						"bytes that do not decode",
+						std::to_string(views[i].count) + " elements of " + std::to_string(views[i].stride) + " bytes");
 		}
 		applyFilter(views[i], bytes);
 		answer.values(bytes);

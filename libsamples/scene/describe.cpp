@@ -6,6 +6,8 @@
 #include "core/text.h"
 #include "scene/gbuffer_file.h"
 #include "scene/level_glb.h"
+#include "scene/load_parts.h"
+#include "scene/ray_triangle.h"
 #include "scene/topology.h"
 
 #include <glm/geometric.hpp>
@@ -13,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <numeric>
 #include <vector>
@@ -57,10 +58,9 @@ void addBounds(const Bounds& bounds, Facts& facts)
 double areaOf(const Level& level)
 {
 	double twice = 0.0;
-	for (const glm::uvec3& t : level.triangles)
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
 	{
-		const glm::dvec3 a = level.positions[t.x];
-		twice += glm::length(glm::cross(level.positions[t.y] - a, level.positions[t.z] - a));
+		twice += glm::length(twiceAreaOf(level, t));
 	}
 	return 0.5 * twice;
 }
@@ -73,20 +73,27 @@ void addMaterials(const Level& level, Facts& facts)
 	{
 		triangles[material] += 1;
 	}
-	std::vector<std::string> lines;
+	const auto is_seen_through = [](const Material& material)
+	{
+		return material.alpha_mode != AlphaMode::opaque;
+	};
+	const auto seen_through = std::count_if(level.material_list.begin(), level.material_list.end(), is_seen_through);
+	facts.whole("materials", level.material_list.size());
+	facts.line("materials: " + std::to_string(level.material_list.size()) + ", " + std::to_string(seen_through) +
+			   " that light passes through");
 	std::vector<Facts> items;
 	for (std::size_t i = 0; i < triangles.size(); ++i)
 	{
 		const Material& material = level.material_list[i];
-		if (material.alpha_mode == AlphaMode::opaque)
+		if (!is_seen_through(material))
 		{
 			continue;
 		}
 		const std::string mask = material.mask < 0 ? "" : level.masks[static_cast<std::size_t>(material.mask)].name;
-		lines.push_back("  " + std::string(nameOf(material.alpha_mode)) + " '" + oneLine(material.name) + "': cut-off " +
-						roundedText(material.cutoff, 4) + ", mean alpha " + roundedText(material.mean_alpha, 4) + ", coverage " +
-						roundedText(material.coverage, 4) + ", " + counted(triangles[i], "triangle", "triangles") +
-						(mask.empty() ? ", no texture" : ", " + oneLine(mask)));
+		facts.line("  " + std::string(nameOf(material.alpha_mode)) + " '" + oneLine(material.name) + "': cut-off " +
+				   roundedText(material.cutoff, 4) + ", mean alpha " + roundedText(material.mean_alpha, 4) + ", coverage " +
+				   roundedText(material.coverage, 4) + ", " + counted(triangles[i], "triangle", "triangles") +
+				   (mask.empty() ? ", no texture" : ", " + oneLine(mask)));
 		Facts& item = items.emplace_back();
 		item.text("name", material.name);
 		item.text("mode", nameOf(material.alpha_mode));
@@ -95,13 +102,6 @@ void addMaterials(const Level& level, Facts& facts)
 		item.number("coverage", material.coverage);
 		item.whole("triangles", triangles[i]);
 		item.text("mask", mask);
-	}
-	facts.whole("materials", level.material_list.size());
-	facts.line("materials: " + std::to_string(level.material_list.size()) + ", " + std::to_string(items.size()) +
-			   " that light passes through");
-	for (const std::string& line : lines)
-	{
-		facts.line(line);
 	}
 	facts.items("see_through", std::move(items));
 }
@@ -228,11 +228,6 @@ ChannelFacts factsOf(const Image& image, int channel)
 	return facts;
 }
 
-std::string percent(std::size_t part, std::size_t whole)
-{
-	return roundedText(100.0 * static_cast<double>(part) / static_cast<double>(whole), 3) + " %";
-}
-
 void addChannels(const Image& image, Facts& facts)
 {
 	std::size_t width = 0;
@@ -253,7 +248,10 @@ void addChannels(const Image& image, Facts& facts)
 		line += found.finite > 0
 					? roundedText(found.least, 6) + " to " + roundedText(found.most, 6) + ", mean " + roundedText(mean, 6)
 					: "no finite value";
-		line += found.infinite > 0 ? ", infinite in " + percent(found.infinite, pixels) : "";
+		line += found.infinite > 0
+					? ", infinite in " + roundedText(100.0 * static_cast<double>(found.infinite) / static_cast<double>(pixels), 3) +
+						  " %"
+					: "";
 		line += found.nan > 0 ? ", NaN in " + counted(found.nan, "pixel", "pixels") : "";
 		facts.line(line);
 		Facts& item = items.emplace_back();
@@ -315,13 +313,6 @@ void addNotes(const Image& image, Facts& facts)
 constexpr double kMemoryATriangle = 650.0; // for either asset
 constexpr double kMemoryAtLeast = 20e6;
 constexpr double kOnePlane = 1e-4; // sine of the angle up to which volumes merge neighbours
-
-glm::dvec3 twiceAreaOf(const Level& level, std::size_t t)
-{
-	const glm::uvec3 corner = level.triangles[t];
-	const glm::dvec3 a = level.positions[corner.x];
-	return glm::cross(level.positions[corner.y] - a, level.positions[corner.z] - a);
-}
 
 bool isOnePlane(glm::dvec3 a, glm::dvec3 b)
 {
@@ -401,10 +392,7 @@ void findSizes(const Level& level, LevelFacts& facts)
 bool isImageName(const std::string& path)
 {
 	constexpr std::array<std::string_view, 9> kEndings{".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr", ".tga", ".bmp"};
-	std::string ending = std::filesystem::path(path).extension().string();
-	std::transform(ending.begin(), ending.end(), ending.begin(),
-				   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-	return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+	return std::find(kEndings.begin(), kEndings.end(), endingOf(path)) != kEndings.end();
 }
 
 void describeImage(const Image& image, Facts& facts)

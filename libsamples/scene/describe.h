@@ -8,7 +8,6 @@
 #include "scene/load.h"
 
 #include <cstddef>
-#include <cstdint>
 #include <string>
 
 namespace nook

@@ -3,7 +3,6 @@
 
 #include "core/parallel.h"
 #include "core/text.h"
-#include "scene/level.h"
 #include "scene/load_parts.h"
 #include "scene/topology.h"
 
@@ -16,22 +15,13 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
-#include <span>
 #include <utility>
-#include <vector>
 
 namespace nook
 {
 namespace
 {
-
-struct InsideOutPart
-{
-	std::size_t first_triangle = 0;
-	double volume_m3 = 0.0; // signed: negative
-};
 
 constexpr uint32_t kNoPart = UINT32_MAX;
 
@@ -43,7 +33,7 @@ struct SolidPart
 	uint32_t first_triangle = 0;
 	bool both_sides = true;
 	Bounds bounds;
-	double volume_m3 = 0.0;
+	double volume_m3 = 0.0; // signed: negative if it faces inward
 	double area_m2 = 0.0;
 	glm::dvec3 sum{0.0}; // of the corners of its triangles
 	double corners = 0.0;
@@ -61,11 +51,6 @@ struct Point
 	Bounds bounds;           // of everything it represents
 	uint32_t part = kNoPart; // none for a camera
 };
-
-bool isWithin(const Bounds& inner, const Bounds& outer)
-{
-	return glm::all(glm::greaterThanEqual(inner.least, outer.least)) && glm::all(glm::lessThanEqual(inner.most, outer.most));
-}
 
 // Follows a ray upward from `p`: 1 if it leaves through the triangle's front, −1 through its back, 0 if it misses. It hits exactly
 // one of two triangles that share an edge, because both evaluate the edge from the same end.
@@ -90,10 +75,17 @@ int turnsAbove(glm::dvec3 p, const std::array<glm::dvec3, 3>& corners)
 	return across.y * glm::dot(across, corners[0] - p) > 0.0 ? turns : 0;
 }
 
-class Finder
+// Finds parts that are inside out. A part consists of triangles connected by edges; it is closed if every edge has two triangles in
+// opposite directions. If more than two meet, those of one mesh (meshes[triangle]) are paired. Excluded are
+// - parts that look the same from both sides (both_sides[triangle] ≠ 0 for all of their triangles),
+// - rooms: parts around another part or a camera,
+// - cavities: parts inside closed parts that face outward.
+// Sorted by the first triangle. Triangles that the edge table excludes belong to no part.
+class InsideOutFinder
 {
 public:
-	Finder(const Level& level, const EdgeTable& edges, std::span<const uint32_t> meshes, std::span<const uint8_t> both_sides)
+	InsideOutFinder(const Level& level, const EdgeTable& edges, std::span<const uint32_t> meshes,
+					std::span<const uint8_t> both_sides)
 		: m_level(level), m_both_sides(both_sides), m_open(level.triangles.size(), kUnused),
 		  m_part_of(level.triangles.size(), kNoPart)
 	{
@@ -124,7 +116,7 @@ public:
 		}
 	}
 
-	std::vector<InsideOutPart> run()
+	std::vector<SolidPart> run()
 	{
 		addParts(kClosed);
 		const std::size_t closed = m_parts.size();
@@ -134,39 +126,31 @@ public:
 		}
 		addParts(kOpen);
 		measure();
-		std::vector<uint32_t> inward;
+		std::vector<uint8_t> inward(closed, 0);
+		std::vector<Point> points; // one of each inward part
 		for (uint32_t part = 0; part < closed; ++part)
 		{
 			if (isInward(m_parts[part]))
 			{
-				inward.push_back(part);
+				inward[part] = 1;
+				points.push_back({cornersOf(m_parts[part].first_triangle)[0], m_parts[part].bounds, part});
 			}
 		}
-		if (inward.empty())
+		if (points.empty())
 		{
 			return {};
 		}
-		std::vector<Point> points;
-		for (const uint32_t part : inward)
-		{
-			points.push_back({cornersOf(m_parts[part].first_triangle)[0], m_parts[part].bounds, part});
-		}
 		std::vector<int> turns(closed, 0); // winding number of the closed parts around each
-		std::vector<uint8_t> all(closed, 1);
-		eachWithin(std::move(points), all, [&](uint32_t /*outer*/, const Point& point, int times) { turns[point.part] += times; });
-		std::vector<uint8_t> asked(closed, 0);
-		for (const uint32_t part : inward)
-		{
-			asked[part] = 1;
-		}
+		eachWithin(std::move(points), std::vector<uint8_t>(closed, 1),
+				   [&](uint32_t /*outer*/, const Point& point, int times) { turns[point.part] += times; });
 		std::vector<uint8_t> is_room(closed, 0);
-		eachWithin(allPoints(), asked, [&](uint32_t outer, const Point& /*point*/, int /*times*/) { is_room[outer] = 1; });
-		std::vector<InsideOutPart> found;
-		for (const uint32_t part : inward)
+		eachWithin(allPoints(), inward, [&](uint32_t outer, const Point& /*point*/, int /*times*/) { is_room[outer] = 1; });
+		std::vector<SolidPart> found;
+		for (std::size_t part = 0; part < closed; ++part)
 		{
-			if (turns[part] <= 0 && is_room[part] == 0)
+			if (inward[part] != 0 && turns[part] <= 0 && is_room[part] == 0)
 			{
-				found.push_back({m_parts[part].first_triangle, m_parts[part].volume_m3});
+				found.push_back(m_parts[part]);
 			}
 		}
 		return found;
@@ -266,7 +250,8 @@ private:
 			for (auto point = std::lower_bound(points.begin(), points.end(), bounds.least.x, from);
 				 point != points.end() && point->at.x <= bounds.most.x; ++point)
 			{
-				if (point->part != part && isWithin(point->bounds, bounds))
+				if (point->part != part && glm::all(glm::greaterThanEqual(point->bounds.least, bounds.least)) &&
+					glm::all(glm::lessThanEqual(point->bounds.most, bounds.most)))
 				{
 					within.push_back(*point);
 				}
@@ -304,18 +289,6 @@ private:
 	std::vector<SolidPart> m_parts;  // closed ones, then the relevant open ones
 };
 
-// A part consists of triangles connected by edges; it is closed if every edge has two triangles in opposite directions. If more
-// than two meet, those of one mesh (meshes[triangle]) are paired. Excluded are
-// - parts that look the same from both sides (both_sides[triangle] ≠ 0 for all of their triangles),
-// - rooms: parts around another part or a camera,
-// - cavities: parts inside closed parts that face outward.
-// Sorted by the first triangle. Triangles that the edge table excludes belong to no part.
-std::vector<InsideOutPart> insideOutParts(const Level& level, const EdgeTable& edges, std::span<const uint32_t> meshes,
-										  std::span<const uint8_t> both_sides)
-{
-	return Finder(level, edges, meshes, both_sides).run();
-}
-
 // Maximum ratio of height to longest edge of a sliver. With 32-bit positions, if the triangle is ten thousand times as wide as
 // their rounding, its direction is known to one part in a thousand at best.
 constexpr double kSliver = 1e-4;
@@ -336,7 +309,7 @@ enum class Fate : uint8_t
 
 bool isFinite(glm::dvec3 p)
 {
-	return std::fabs(p.x) <= kFarthest_m && std::fabs(p.y) <= kFarthest_m && std::fabs(p.z) <= kFarthest_m; // false for NaN
+	return glm::all(glm::lessThanEqual(glm::abs(p), glm::dvec3(kFarthest_m))); // false for NaN
 }
 
 double greatest(glm::dvec3 p)
@@ -388,13 +361,19 @@ public:
 		edges();
 		emptyMeshes();
 		vertices();
-		std::vector<uint8_t> keep(m_fates.size());
-		parallelForAll(keep.size(), m_threads, [&](std::size_t i) { keep[i] = m_fates[i] == Fate::kept ? 1 : 0; });
-		compactLevel(m_level, keep, m_threads, m_more);
+		compactLevel(m_level, marked([&](std::size_t i) { return m_fates[i] == Fate::kept; }), m_threads, m_more);
 		return std::move(m_diagnosis);
 	}
 
 private:
+	// 1 for each triangle that `is` is true for.
+	template <class Is> std::vector<uint8_t> marked(const Is& is) const
+	{
+		std::vector<uint8_t> marks(m_fates.size());
+		parallelForAll(marks.size(), m_threads, [&](std::size_t i) { marks[i] = is(i) ? 1 : 0; });
+		return marks;
+	}
+
 	// Mesh and triangle in the original level.
 	std::string placeOf(std::size_t triangle) const
 	{
@@ -513,9 +492,7 @@ private:
 		};
 		const std::vector<uint32_t> first = firstEqual(m_welded.size(), m_threads, hash, equal);
 		m_repeated.assign(m_welded.size(), 0);
-		m_both_sides.resize(m_welded.size());
-		parallelForAll(m_welded.size(), m_threads,
-					   [&](std::size_t i) { m_both_sides[i] = m_level.material_list[m_level.materials[i]].two_sided ? 1 : 0; });
+		m_both_sides = marked([&](std::size_t i) { return m_level.material_list[m_level.materials[i]].two_sided; });
 		uint64_t coincident = 0;
 		std::size_t first_coincident = 0;
 		std::vector<uint32_t> back(first.size(), kNone); // for the first one at a place: the first there with opposite winding
@@ -555,16 +532,14 @@ private:
 			std::fill_n(parts.begin() + static_cast<std::ptrdiff_t>(mesh.first_triangle), mesh.triangle_count,
 						static_cast<uint32_t>(i));
 		}
-		std::vector<uint8_t> skip(m_fates.size());
-		parallelForAll(skip.size(), m_threads,
-					   [&](std::size_t i) { skip[i] = m_fates[i] != Fate::kept || m_repeated[i] != 0 ? 1 : 0; });
+		const std::vector<uint8_t> skip = marked([&](std::size_t i) { return m_fates[i] != Fate::kept || m_repeated[i] != 0; });
 		const EdgeTable edges(m_welded, skip, m_level.positions.size(), m_threads);
 		m_welded = {};
 		const EdgeFaults faults = findEdgeFaults(edges, parts, m_threads);
 		found("non-manifold-edges", faults.non_manifold.count, faults.non_manifold.first_triangle);
 		found("inconsistent-winding", faults.inconsistent.count, faults.inconsistent.first_triangle);
 		Tally inside_out;
-		for (const InsideOutPart& part : insideOutParts(m_level, edges, parts, m_both_sides))
+		for (const SolidPart& part : InsideOutFinder(m_level, edges, parts, m_both_sides).run())
 		{
 			inside_out.add("mesh '" + meshOf(part.first_triangle).name + "', volume " + roundedText(part.volume_m3, 3) + " m3");
 		}

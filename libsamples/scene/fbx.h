@@ -47,7 +47,8 @@ struct FbxNode
 	std::vector<FbxValue> values;
 	std::vector<FbxNode> children;
 
-	const FbxNode* child(std::string_view name) const; // first child with that name, or null
+	const FbxNode* child(std::string_view name) const;                   // first child with that name, or null
+	const std::vector<FbxNode>& childrenOf(std::string_view name) const; // its children; none without it
 };
 
 class FbxFile
@@ -72,14 +73,15 @@ public:
 	// Value `index` of a node as text; empty if absent. ASCII escapes are resolved.
 	std::string text(const FbxNode& node, std::size_t index) const;
 
-	// The numbers of the node's array or, without one, of all its values. `where` locates the node in errors.
-	std::vector<double> numbersOf(const FbxNode& node, const std::string& where) const;
-	std::vector<int64_t> wholesOf(const FbxNode& node, const std::string& where) const;
+	// Text of a node below; empty if absent.
+	std::string textBelow(const FbxNode& parent, std::string_view name) const;
+
+	// The numbers of the node's array or, without one, of all its values: double or int64_t. `where` locates the node in errors.
+	template <class T> std::vector<T> arrayOf(const FbxNode& node, const std::string& where) const;
 
 	[[noreturn]] void fail(const std::string& where, const std::string& found, const std::string& expected) const;
 
 private:
-	template <class T> std::vector<T> arrayOf(const FbxNode& node, const std::string& where) const;
 	template <class T> void decode(const FbxValue& value, const std::string& where, std::vector<T>& into) const;
 
 	std::string m_path;

@@ -14,29 +14,17 @@ namespace nook
 namespace
 {
 
-std::vector<double> numbersBelow(const FbxObjects& objects, const FbxObject& object, const FbxNode& parent, std::string_view name)
+template <class T>
+std::vector<T> arrayBelow(const FbxObjects& objects, const FbxObject& object, const FbxNode& parent, std::string_view name)
 {
 	const FbxNode* const node = parent.child(name);
-	return node == nullptr ? std::vector<double>()
-						   : objects.file().numbersOf(*node, FbxObjects::placeOf(object) + ": " + std::string(name));
-}
-
-std::vector<int64_t> wholesBelow(const FbxObjects& objects, const FbxObject& object, const FbxNode& parent, std::string_view name)
-{
-	const FbxNode* const node = parent.child(name);
-	return node == nullptr ? std::vector<int64_t>()
-						   : objects.file().wholesOf(*node, FbxObjects::placeOf(object) + ": " + std::string(name));
-}
-
-std::string textBelow(const FbxObjects& objects, const FbxNode& parent, std::string_view name)
-{
-	const FbxNode* const node = parent.child(name);
-	return node == nullptr ? "" : objects.file().text(*node, 0);
+	return node == nullptr ? std::vector<T>()
+						   : objects.file().arrayOf<T>(*node, FbxObjects::placeOf(object) + ": " + std::string(name));
 }
 
 std::vector<glm::dvec3> vectorsBelow(const FbxObjects& objects, const FbxObject& object, std::string_view name)
 {
-	const std::vector<double> numbers = numbersBelow(objects, object, *object.node, name);
+	const std::vector<double> numbers = arrayBelow<double>(objects, object, *object.node, name);
 	if (numbers.size() % 3 != 0)
 	{
 		objects.file().fail(FbxObjects::placeOf(object) + ": " + std::string(name), std::to_string(numbers.size()) + " numbers",
@@ -63,19 +51,14 @@ FbxLayer::By mappingOf(const std::string& name)
 FbxLayer layerOf(const FbxObjects& objects, const FbxObject& geometry, const FbxNode& node, const std::string& values)
 {
 	FbxLayer layer;
-	layer.name = textBelow(objects, node, "Name");
-	layer.by = mappingOf(textBelow(objects, node, "MappingInformationType"));
-	layer.values = numbersBelow(objects, geometry, node, values);
-	if (textBelow(objects, node, "ReferenceInformationType") != "Direct")
+	layer.name = objects.file().textBelow(node, "Name");
+	layer.by = mappingOf(objects.file().textBelow(node, "MappingInformationType"));
+	layer.values = arrayBelow<double>(objects, geometry, node, values);
+	if (objects.file().textBelow(node, "ReferenceInformationType") != "Direct")
 	{
-		layer.indices = wholesBelow(objects, geometry, node, values + "Index");
+		layer.indices = arrayBelow<int64_t>(objects, geometry, node, values + "Index");
 	}
 	return layer;
-}
-
-const FbxNode* firstOf(const FbxObject& geometry, std::string_view type)
-{
-	return geometry.node->child(type);
 }
 
 // Number of the element of a type that the first layer refers to.
@@ -86,7 +69,7 @@ int64_t defaultOf(const FbxObjects& objects, const FbxObject& geometry, std::str
 	{
 		const FbxNode& element = layer->children[i];
 		const FbxNode* const index = element.child("TypedIndex");
-		if (element.name == "LayerElement" && textBelow(objects, element, "Type") == type && index != nullptr)
+		if (element.name == "LayerElement" && objects.file().textBelow(element, "Type") == type && index != nullptr)
 		{
 			return wholeAt(*index, 0).value_or(0);
 		}
@@ -121,7 +104,7 @@ struct Target
 // Shapes are interpolated linearly between adjacent targets, and extrapolated from the last two.
 std::vector<Target> targetsOf(const FbxObjects& objects, const FbxObject& channel)
 {
-	const std::vector<double> fulls = numbersBelow(objects, channel, *channel.node, "FullWeights");
+	const std::vector<double> fulls = arrayBelow<double>(objects, channel, *channel.node, "FullWeights");
 	std::vector<Target> targets(1);
 	for (const std::size_t shape : objects.partsOf(channel, "Geometry", "Shape"))
 	{
@@ -152,26 +135,45 @@ std::vector<Target> targetsOf(const FbxObjects& objects, const FbxObject& channe
 	return targets;
 }
 
+// The parts of one kind of a geometry's deformers of another.
+std::vector<std::size_t> partsOfParts(const FbxObjects& objects, const FbxObject& geometry, std::string_view deformers,
+									  std::string_view kind)
+{
+	std::vector<std::size_t> all;
+	for (const std::size_t deformer : objects.partsOf(geometry, {}, deformers))
+	{
+		const std::vector<std::size_t> parts = objects.partsOf(objects[deformer], {}, kind);
+		all.insert(all.end(), parts.begin(), parts.end());
+	}
+	return all;
+}
+
 std::vector<Target> targetsOfMesh(const FbxObjects& objects, const FbxObject& geometry)
 {
 	std::vector<Target> targets;
-	for (const std::size_t deformer : objects.partsOf(geometry, {}, "BlendShape"))
+	for (const std::size_t channel : partsOfParts(objects, geometry, "BlendShape", "BlendShapeChannel"))
 	{
-		for (const std::size_t channel : objects.partsOf(objects[deformer], {}, "BlendShapeChannel"))
-		{
-			for (const Target& target : targetsOf(objects, objects[channel]))
-			{
-				targets.push_back(target);
-			}
-		}
+		const std::vector<Target> more = targetsOf(objects, objects[channel]);
+		targets.insert(targets.end(), more.begin(), more.end());
 	}
 	return targets;
+}
+
+// Checks an index of `Indexes` of a mesh with that many points.
+std::size_t pointAt(const FbxObjects& objects, const FbxObject& object, int64_t index, std::size_t points)
+{
+	if (index < 0 || static_cast<std::size_t>(index) >= points)
+	{
+		objects.file().fail(FbxObjects::placeOf(object) + ": Indexes", std::to_string(index),
+							"one of " + std::to_string(points) + " points");
+	}
+	return static_cast<std::size_t>(index);
 }
 
 void applyShape(const FbxObjects& objects, const Target& target, std::vector<glm::dvec3>& points, std::vector<glm::dvec3>& turned)
 {
 	const FbxObject& shape = objects[target.shape];
-	const std::vector<int64_t> indices = wholesBelow(objects, shape, *shape.node, "Indexes");
+	const std::vector<int64_t> indices = arrayBelow<int64_t>(objects, shape, *shape.node, "Indexes");
 	const std::vector<glm::dvec3> moves = vectorsBelow(objects, shape, "Vertices");
 	const std::vector<glm::dvec3> turns = vectorsBelow(objects, shape, "Normals");
 	if (moves.size() != indices.size())
@@ -180,12 +182,7 @@ void applyShape(const FbxObjects& objects, const Target& target, std::vector<glm
 	}
 	for (std::size_t i = 0; i < indices.size(); ++i)
 	{
-		if (indices[i] < 0 || static_cast<std::size_t>(indices[i]) >= points.size())
-		{
-			objects.file().fail(FbxObjects::placeOf(shape) + ": Indexes", std::to_string(indices[i]),
-								"one of " + std::to_string(points.size()) + " points");
-		}
-		const auto point = static_cast<std::size_t>(indices[i]);
+		const std::size_t point = pointAt(objects, shape, indices[i], points.size());
 		const double weight = target.weight * (i < target.percents.size() ? target.percents[i] / 100.0 : 1.0);
 		points[point] += weight * moves[i];
 		if (turns.size() == moves.size())
@@ -214,15 +211,12 @@ struct Bone
 std::vector<Bone> bonesOf(const FbxObjects& objects, const FbxObject& geometry, const std::vector<const FbxPlace*>& worlds)
 {
 	std::vector<Bone> bones;
-	for (const std::size_t skin : objects.partsOf(geometry, {}, "Skin"))
+	for (const std::size_t cluster : partsOfParts(objects, geometry, "Skin", "Cluster"))
 	{
-		for (const std::size_t cluster : objects.partsOf(objects[skin], {}, "Cluster"))
+		const std::vector<std::size_t> links = objects.partsOf(objects[cluster], "Model");
+		if (!links.empty() && worlds[links.front()] != nullptr)
 		{
-			const std::vector<std::size_t> links = objects.partsOf(objects[cluster], "Model");
-			if (!links.empty() && worlds[links.front()] != nullptr)
-			{
-				bones.push_back({&objects[cluster], worlds[links.front()]});
-			}
+			bones.push_back({&objects[cluster], worlds[links.front()]});
 		}
 	}
 	return bones;
@@ -230,7 +224,7 @@ std::vector<Bone> bonesOf(const FbxObjects& objects, const FbxObject& geometry, 
 
 std::optional<glm::dmat4> matrixBelow(const FbxObjects& objects, const FbxObject& cluster, std::string_view name)
 {
-	const std::vector<double> numbers = numbersBelow(objects, cluster, *cluster.node, name);
+	const std::vector<double> numbers = arrayBelow<double>(objects, cluster, *cluster.node, name);
 	if (numbers.size() != 16 && !numbers.empty())
 	{
 		objects.file().fail(FbxObjects::placeOf(cluster) + ": " + std::string(name), std::to_string(numbers.size()) + " numbers",
@@ -305,25 +299,25 @@ public:
 		for (const std::size_t index : objects.partsOf(geometry, {}, "Skin"))
 		{
 			const FbxObject& skin = objects[index];
-			const std::string type = textBelow(objects, *skin.node, "SkinningType");
+			const std::string type = objects.file().textBelow(*skin.node, "SkinningType");
 			if (type != "DualQuaternion" && type != "Blend")
 			{
 				continue;
 			}
 			m_duals.resize(points);
 			m_dual_shares.resize(points, type == "Blend" ? 0.0 : 1.0);
-			const std::vector<int64_t> indices = wholesBelow(objects, skin, *skin.node, "Indexes");
-			const std::vector<double> shares = numbersBelow(objects, skin, *skin.node, "BlendWeights");
+			const std::vector<int64_t> indices = arrayBelow<int64_t>(objects, skin, *skin.node, "Indexes");
+			const std::vector<double> shares = arrayBelow<double>(objects, skin, *skin.node, "BlendWeights");
 			for (std::size_t i = 0; type == "Blend" && i < std::min(shares.size(), indices.size()); ++i)
 			{
-				m_dual_shares[pointAt(skin, indices[i])] = shares[i];
+				m_dual_shares[pointAt(objects, skin, indices[i], points)] = shares[i];
 			}
 		}
 	}
 
 	std::vector<glm::dmat4> run(const std::vector<Bone>& bones)
 	{
-		const std::string mode = textBelow(m_objects, *bones.front().cluster->node, "Mode");
+		const std::string mode = m_objects.file().textBelow(*bones.front().cluster->node, "Mode");
 		m_link = mode == "Additive" ? Link::additive : mode == "Total1" || mode == "TotalOne" ? Link::total_one : Link::normalized;
 		for (const Bone& bone : bones)
 		{
@@ -347,21 +341,11 @@ public:
 	}
 
 private:
-	std::size_t pointAt(const FbxObject& object, int64_t index) const
-	{
-		if (index < 0 || static_cast<std::size_t>(index) >= m_matrices.size())
-		{
-			m_objects.file().fail(FbxObjects::placeOf(object) + ": Indexes", std::to_string(index),
-								  "one of " + std::to_string(m_matrices.size()) + " points");
-		}
-		return static_cast<std::size_t>(index);
-	}
-
 	void add(const Bone& bone)
 	{
 		const FbxObject& cluster = *bone.cluster;
-		const std::vector<int64_t> indices = wholesBelow(m_objects, cluster, *cluster.node, "Indexes");
-		const std::vector<double> weights = numbersBelow(m_objects, cluster, *cluster.node, "Weights");
+		const std::vector<int64_t> indices = arrayBelow<int64_t>(m_objects, cluster, *cluster.node, "Indexes");
+		const std::vector<double> weights = arrayBelow<double>(m_objects, cluster, *cluster.node, "Weights");
 		if (indices.size() != weights.size())
 		{
 			m_objects.file().fail(FbxObjects::placeOf(cluster) + ": Weights", std::to_string(weights.size()) + " numbers",
@@ -372,7 +356,7 @@ private:
 		const DualSum dual(world);
 		for (std::size_t i = 0; i < indices.size(); ++i)
 		{
-			const std::size_t point = pointAt(cluster, indices[i]);
+			const std::size_t point = pointAt(m_objects, cluster, indices[i], m_matrices.size());
 			const double weight = weights[i];
 			if (m_link == Link::additive && weight != 0.0)
 			{
@@ -422,12 +406,12 @@ std::optional<std::size_t> FbxLayer::elementAt(std::size_t corner, std::size_t p
 
 FbxLayer readFbxMaterials(const FbxObjects& objects, const FbxObject& geometry)
 {
-	const FbxNode* const node = firstOf(geometry, "LayerElementMaterial");
+	const FbxNode* const node = geometry.node->child("LayerElementMaterial");
 	FbxLayer layer;
 	if (node != nullptr)
 	{
-		layer.by = mappingOf(textBelow(objects, *node, "MappingInformationType"));
-		layer.values = numbersBelow(objects, geometry, *node, "Materials");
+		layer.by = mappingOf(objects.file().textBelow(*node, "MappingInformationType"));
+		layer.values = arrayBelow<double>(objects, geometry, *node, "Materials");
 	}
 	return layer;
 }
@@ -437,7 +421,7 @@ FbxMesh readFbxMesh(const FbxObjects& objects, const FbxObject& geometry)
 	FbxMesh mesh;
 	mesh.points = vectorsBelow(objects, geometry, "Vertices");
 	// The last corner of a polygon is stored as −1 − its point.
-	for (const int64_t index : wholesBelow(objects, geometry, *geometry.node, "PolygonVertexIndex"))
+	for (const int64_t index : arrayBelow<int64_t>(objects, geometry, *geometry.node, "PolygonVertexIndex"))
 	{
 		const int64_t point = index < 0 ? -1 - index : index;
 		mesh.corners.push_back(point < std::numeric_limits<uint32_t>::max() ? static_cast<uint32_t>(point) : ~0U);
@@ -450,7 +434,7 @@ FbxMesh readFbxMesh(const FbxObjects& objects, const FbxObject& geometry)
 	{
 		mesh.ends.push_back(mesh.corners.size());
 	}
-	if (const FbxNode* const normals = firstOf(geometry, "LayerElementNormal"))
+	if (const FbxNode* const normals = geometry.node->child("LayerElementNormal"))
 	{
 		mesh.normals = layerOf(objects, geometry, *normals, "Normals");
 	}
@@ -461,17 +445,12 @@ FbxMesh readFbxMesh(const FbxObjects& objects, const FbxObject& geometry)
 
 bool isPosed(const FbxObjects& objects, const FbxObject& geometry)
 {
-	for (const std::size_t skin : objects.partsOf(geometry, {}, "Skin"))
+	const std::vector<std::size_t> clusters = partsOfParts(objects, geometry, "Skin", "Cluster");
+	const auto has_bone = [&](std::size_t cluster)
 	{
-		for (const std::size_t cluster : objects.partsOf(objects[skin], {}, "Cluster"))
-		{
-			if (!objects.partsOf(objects[cluster], "Model").empty())
-			{
-				return true;
-			}
-		}
-	}
-	return !targetsOfMesh(objects, geometry).empty();
+		return !objects.partsOf(objects[cluster], "Model").empty();
+	};
+	return std::any_of(clusters.begin(), clusters.end(), has_bone) || !targetsOfMesh(objects, geometry).empty();
 }
 
 std::vector<glm::dmat4> poseFbxMesh(const FbxObjects& objects, const FbxObject& geometry, const FbxPlace& place,

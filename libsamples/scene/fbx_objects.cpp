@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace nook
 {
@@ -145,11 +144,6 @@ private:
 		return children;
 	}
 
-	bool isLodGroup(const FbxObject& node) const
-	{
-		return node.kind == "LodGroup" || !m_objects.partsOf(node, "NodeAttribute", "LodGroup").empty();
-	}
-
 	// Visits a node, possibly the root, and its descendants.
 	void walk(std::size_t from, bool in_scene)
 	{
@@ -164,7 +158,8 @@ private:
 			}
 			const std::vector<std::size_t> children = childrenOf(node);
 			// The first visible level of detail represents the others.
-			const bool is_group = isLodGroup(m_objects[node]);
+			const bool is_group =
+				m_objects[node].kind == "LodGroup" || !m_objects.partsOf(m_objects[node], "NodeAttribute", "LodGroup").empty();
 			const auto kept = is_group
 								  ? std::find_if(children.begin(), children.end(),
 												 [&](std::size_t child) { return !isOff(child) && !isNotShown(m_objects[child]); })
@@ -242,12 +237,7 @@ private:
 
 FbxProperties::FbxProperties(const FbxNode& parent)
 {
-	const FbxNode* const list = parent.child("Properties70");
-	if (list == nullptr)
-	{
-		return;
-	}
-	for (const FbxNode& property : list->children)
+	for (const FbxNode& property : parent.childrenOf("Properties70"))
 	{
 		if (property.name == "P" && !property.values.empty() && property.values.front().kind == FbxValue::Kind::text)
 		{
@@ -273,12 +263,7 @@ FbxObjects::FbxObjects(const std::string& path) : m_file(path)
 
 void FbxObjects::readTemplates()
 {
-	const FbxNode* const definitions = m_file.root().child("Definitions");
-	if (definitions == nullptr)
-	{
-		return;
-	}
-	for (const FbxNode& type : definitions->children)
+	for (const FbxNode& type : m_file.root().childrenOf("Definitions"))
 	{
 		for (const FbxNode& from : type.children)
 		{
@@ -295,13 +280,9 @@ void FbxObjects::readObjects()
 {
 	m_objects.emplace_back();
 	m_index_of[0] = 0;
-	const FbxNode* const list = m_file.root().child("Objects");
-	if (list == nullptr)
-	{
-		return;
-	}
-	m_objects.reserve(list->children.size() + 1);
-	for (const FbxNode& node : list->children)
+	const std::vector<FbxNode>& list = m_file.root().childrenOf("Objects");
+	m_objects.reserve(list.size() + 1);
+	for (const FbxNode& node : list)
 	{
 		const std::optional<int64_t> id = wholeAt(node, 0);
 		if (!id || !m_index_of.try_emplace(*id, m_objects.size()).second)
@@ -322,12 +303,7 @@ void FbxObjects::readObjects()
 
 void FbxObjects::readConnections()
 {
-	const FbxNode* const list = m_file.root().child("Connections");
-	if (list == nullptr)
-	{
-		return;
-	}
-	for (const FbxNode& node : list->children)
+	for (const FbxNode& node : m_file.root().childrenOf("Connections"))
 	{
 		const std::optional<int64_t> from = wholeAt(node, 1);
 		const std::optional<int64_t> to = wholeAt(node, 2);

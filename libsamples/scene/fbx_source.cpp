@@ -6,8 +6,7 @@
 #include "scene/fbx.h"
 
 #include "core/base64.h"
-#include "core/error.h"
-#include "core/math.h"
+#include "core/words.h"
 #include "scene/cut_faces.h"
 #include "scene/load_parts.h"
 
@@ -18,8 +17,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <optional>
 
 namespace nook
 {
@@ -100,11 +97,7 @@ public:
 		m_to.value(MeshHead{0, true});
 		m_tallies["points-or-lines"].add(m_faces.lines.first, m_faces.lines.count);
 		m_tallies["bad-polygons"] = m_faces.bad_polygons;
-		for (const std::string_view id : kSentFindings)
-		{
-			m_to.value(m_tallies[id].count);
-			m_to.text(m_tallies[id].first);
-		}
+		sendTallies(m_tallies, m_to);
 		m_to.value(uint64_t{0}); // number of files read
 		m_to.value(uint64_t{0}); // number of missing files
 	}
@@ -281,16 +274,8 @@ private:
 
 	std::string fileOf(const FbxObject& texture) const
 	{
-		for (const char* const name : {"RelativeFilename", "FileName"})
-		{
-			const FbxNode* const node = texture.node->child(name);
-			const std::string file = node == nullptr ? "" : m_file.text(*node, 0);
-			if (!file.empty())
-			{
-				return file;
-			}
-		}
-		return "";
+		const std::string relative = m_file.textBelow(*texture.node, "RelativeFilename");
+		return relative.empty() ? m_file.textBelow(*texture.node, "FileName") : relative;
 	}
 
 	// Picture embedded in its Video object; null if there is none.
@@ -317,12 +302,12 @@ private:
 		std::string open; // base64 continued in the next string
 		for (std::size_t i = 0; i < content.values.size(); ++i)
 		{
+			std::string part = m_file.text(content, i);
 			if (!m_file.isText())
 			{
-				bytes += m_file.text(content, i);
+				bytes += part;
 				continue;
 			}
-			std::string part = m_file.text(content, i);
 			std::erase_if(part, [](char c) { return c == '\n' || c == '\r' || c == ' ' || c == '\t'; });
 			open += part;
 			if (!open.ends_with('=') && i + 1 < content.values.size())
@@ -347,12 +332,19 @@ private:
 		{
 			return glm::dmat3(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, by.x, by.y, 1.0);
 		};
-		const glm::dvec3 scale = m_objects.vector(
-			texture, "Scaling",
-			glm::dvec3(numberBelow(texture, "ModelUVScaling", 0, 1.0), numberBelow(texture, "ModelUVScaling", 1, 1.0), 1.0));
-		const glm::dvec3 move = m_objects.vector(texture, "Translation",
-												 glm::dvec3(numberBelow(texture, "ModelUVTranslation", 0, 0.0),
-															numberBelow(texture, "ModelUVTranslation", 1, 0.0), 0.0));
+		// The property, else the node below, else `fallback`.
+		const auto vectorOf = [&](std::string_view property, std::string_view below, double fallback)
+		{
+			const FbxNode* const node = texture.node->child(below);
+			glm::dvec3 own(fallback);
+			for (std::size_t i = 0; i < 2 && node != nullptr; ++i)
+			{
+				own[static_cast<int>(i)] = numberAt(*node, i).value_or(fallback);
+			}
+			return m_objects.vector(texture, property, own);
+		};
+		const glm::dvec3 scale = vectorOf("Scaling", "ModelUVScaling", 1.0);
+		const glm::dvec3 move = vectorOf("Translation", "ModelUVTranslation", 0.0);
 		const glm::dvec3 scale_pivot = m_objects.vector(texture, "TextureScalingPivot", glm::dvec3(0.0));
 		const glm::dvec3 turn_pivot = m_objects.vector(texture, "TextureRotationPivot", glm::dvec3(0.0));
 		const SinCos turn = sinCosOfDegrees(m_objects.vector(texture, "Rotation", glm::dvec3(0.0)).z);
@@ -362,12 +354,6 @@ private:
 		const glm::dmat3 swapped = swaps ? glm::dmat3(0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0) : glm::dmat3(1.0);
 		return moved(move) * moved(turn_pivot) * turned * moved(-turn_pivot) * moved(scale_pivot) * scaled * moved(-scale_pivot) *
 			   swapped;
-	}
-
-	static double numberBelow(const FbxObject& object, std::string_view name, std::size_t index, double fallback)
-	{
-		const FbxNode* const node = object.node->child(name);
-		return node == nullptr ? fallback : numberAt(*node, index).value_or(fallback);
 	}
 
 	void cameras()
@@ -388,8 +374,7 @@ private:
 		{
 			m_to.text(m_objects[place->object].name);
 			// The camera looks along x; y is up.
-			const glm::dmat4 local(glm::dvec4(0.0, 0.0, 1.0, 0.0), glm::dvec4(0.0, 1.0, 0.0, 0.0), glm::dvec4(-1.0, 0.0, 0.0, 0.0),
-								   glm::dvec4(0.0, 0.0, 0.0, 1.0));
+			const glm::dmat4 local(0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0);
 			m_to.value(rigidOf(m_world_from_file * place->world * local));
 			m_to.value(lensOf(m_objects[camera]));
 		}
@@ -446,9 +431,8 @@ private:
 		}
 		if (corners > 3 * uint64_t{kMaxTriangles})
 		{
-			throw Error(ExitCode::invalid_input, m_file.path() + ": found " + std::to_string(corners) +
-													 " corners of polygons, counting every instance, expected at most " +
-													 std::to_string(3 * kMaxTriangles));
+			refuseInput(m_file.path(), std::to_string(corners) + " corners of polygons, counting every instance",
+						"at most " + std::to_string(3 * kMaxTriangles));
 		}
 	}
 
@@ -484,8 +468,8 @@ private:
 		m_triangles += m_mesh.corners.size() - std::min(m_mesh.corners.size(), 2 * m_mesh.ends.size());
 		if (m_triangles > kMaxTriangles)
 		{
-			throw Error(ExitCode::invalid_input, m_file.path() + ": found more than " + std::to_string(kMaxTriangles) +
-													 " triangles, counting every instance, expected at most so many");
+			refuseInput(m_file.path(), "more than " + std::to_string(kMaxTriangles) + " triangles, counting every instance",
+						"at most so many");
 		}
 	}
 

@@ -5,8 +5,8 @@
 #include "scene/fbx.h"
 
 #include "core/decimal.h"
-#include "core/error.h"
 #include "core/file.h"
+#include "core/words.h"
 #include "scene/mesh_text.h"
 
 #include <zlib.h>
@@ -31,11 +31,6 @@ constexpr uint64_t kMaxExpansion = 1032; // zlib's maximum: 258 bytes from two b
 constexpr uint32_t kFirstVersion = 7100;
 constexpr uint32_t kLastVersion = 7999;
 
-[[noreturn]] void failAt(const std::string& path, const std::string& where, const std::string& found, const std::string& expected)
-{
-	throw Error(ExitCode::invalid_input, path + ": " + where + ": found " + found + ", expected " + expected);
-}
-
 void checkVersion(const std::string& path, int64_t version)
 {
 	if (version < kFirstVersion || version > kLastVersion)
@@ -43,10 +38,10 @@ void checkVersion(const std::string& path, int64_t version)
 		const std::string text = version < 0 || version > 99999
 									 ? std::to_string(version)
 									 : std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 100);
-		throw Error(ExitCode::unsupported,
-					path + ": found FBX " + text +
-						", expected 7.1 to 7.7: export it again as FBX 2011 or newer, or convert it (Autodesk FBX "
-						"Converter, Blender)");
+		refuseInput(path, "FBX " + text,
+					"7.1 to 7.7: export it again as FBX 2011 or newer, or convert it (Autodesk FBX "
+					"Converter, Blender)",
+					ExitCode::unsupported);
 	}
 }
 
@@ -80,7 +75,7 @@ public:
 private:
 	[[noreturn]] void fail(const std::string& found, const std::string& expected) const
 	{
-		failAt(m_path, "byte " + std::to_string(m_at), found, expected);
+		refuseInput(m_path + ": byte " + std::to_string(m_at), found, expected);
 	}
 
 	std::string_view takeBytes(uint64_t size, const char* what)
@@ -156,18 +151,19 @@ private:
 		return list;
 	}
 
-	FbxValue whole(int64_t number)
+	template <class T> FbxValue number()
 	{
+		const T number = take<T>("a value");
 		FbxValue value;
-		value.whole = number;
-		return value;
-	}
-
-	FbxValue number(double number)
-	{
-		FbxValue value;
-		value.kind = FbxValue::Kind::number;
-		value.number = number;
+		if constexpr (std::is_floating_point_v<T>)
+		{
+			value.kind = FbxValue::Kind::number;
+			value.number = static_cast<double>(number);
+		}
+		else
+		{
+			value.whole = number;
+		}
 		return value;
 	}
 
@@ -177,13 +173,13 @@ private:
 		switch (type)
 		{
 		case 'B':
-		case 'C': return whole(take<uint8_t>("a value"));
+		case 'C': return number<uint8_t>();
 		case 'Y':
-		case 'Z': return whole(take<int16_t>("a value"));
-		case 'I': return whole(take<int32_t>("a value"));
-		case 'L': return whole(take<int64_t>("a value"));
-		case 'F': return number(static_cast<double>(take<float>("a value")));
-		case 'D': return number(take<double>("a value"));
+		case 'Z': return number<int16_t>();
+		case 'I': return number<int32_t>();
+		case 'L': return number<int64_t>();
+		case 'F': return number<float>();
+		case 'D': return number<double>();
 		case 'S':
 		case 'R':
 		{
@@ -241,11 +237,6 @@ private:
 
 constexpr std::string_view kSpaces = " \t\r\n\v\f";
 
-bool isBlank(char c)
-{
-	return kSpaces.find(c) != std::string_view::npos;
-}
-
 // Name: value, value, ... { children }. A comment goes from a semicolon to the end of its line.
 class TextParser
 {
@@ -261,7 +252,7 @@ private:
 	[[noreturn]] void fail(const std::string& found, const std::string& expected) const
 	{
 		const auto line = 1 + std::count(m_text.begin(), m_text.begin() + static_cast<std::ptrdiff_t>(m_at), '\n');
-		failAt(m_path, "line " + std::to_string(line), found, expected);
+		refuseInput(m_path + ": line " + std::to_string(line), found, expected);
 	}
 
 	[[noreturn]] void failHere(const std::string& expected) const
@@ -279,7 +270,7 @@ private:
 			{
 				m_at = std::min(m_text.find('\n', m_at), m_text.size() - 1);
 			}
-			else if (!isBlank(m_text[m_at]))
+			else if (kSpaces.find(m_text[m_at]) == std::string_view::npos)
 			{
 				return m_text[m_at];
 			}
@@ -500,12 +491,12 @@ template <class T> bool convert(std::string_view word, T& into)
 	return isNumberText(word) && convert(numberOf(word), into);
 }
 
-std::string textOf(double number)
+std::string quotedNumber(double number)
 {
 	return numberText(number);
 }
 
-std::string textOf(std::string_view word)
+std::string quotedNumber(std::string_view word)
 {
 	return quoted(word);
 }
@@ -516,6 +507,13 @@ const FbxNode* FbxNode::child(std::string_view wanted) const
 {
 	const auto found = std::find_if(children.begin(), children.end(), [&](const FbxNode& node) { return node.name == wanted; });
 	return found == children.end() ? nullptr : &*found;
+}
+
+const std::vector<FbxNode>& FbxNode::childrenOf(std::string_view wanted) const
+{
+	static const std::vector<FbxNode> kNothing;
+	const FbxNode* const found = child(wanted);
+	return found == nullptr ? kNothing : found->children;
 }
 
 std::optional<double> numberAt(const FbxNode& node, std::size_t index)
@@ -563,7 +561,7 @@ FbxFile::FbxFile(std::string path) : m_path(std::move(path)), m_bytes(readFile(m
 
 void FbxFile::fail(const std::string& where, const std::string& found, const std::string& expected) const
 {
-	failAt(m_path, where, found, expected);
+	refuseInput(m_path + ": " + where, found, expected);
 }
 
 std::string FbxFile::text(const FbxNode& node, std::size_t index) const
@@ -576,13 +574,19 @@ std::string FbxFile::text(const FbxNode& node, std::size_t index) const
 	return m_is_text && bytes.find('&') != std::string_view::npos ? unescapedText(bytes) : std::string(bytes);
 }
 
+std::string FbxFile::textBelow(const FbxNode& parent, std::string_view name) const
+{
+	const FbxNode* const node = parent.child(name);
+	return node == nullptr ? "" : text(*node, 0);
+}
+
 template <class T> void FbxFile::decode(const FbxValue& value, const std::string& where, std::vector<T>& into) const
 {
 	const auto take = [&](const auto& number)
 	{
 		if (!convert(number, into.emplace_back()))
 		{
-			fail(where, textOf(number), std::is_same_v<T, int64_t> ? "whole numbers" : "numbers");
+			fail(where, quotedNumber(number), std::is_same_v<T, int64_t> ? "whole numbers" : "numbers");
 		}
 	};
 	if (value.kind != FbxValue::Kind::array)
@@ -595,14 +599,12 @@ template <class T> void FbxFile::decode(const FbxValue& value, const std::string
 	if (value.type == 0)
 	{
 		std::string_view text = value.bytes;
-		while (true)
+		const auto skip = [&]
 		{
-			const std::size_t start = std::min(text.find_first_not_of(" \t\r\n\v\f,"), text.size());
-			text.remove_prefix(start);
-			if (text.empty())
-			{
-				break;
-			}
+			text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n\v\f,"), text.size()));
+		};
+		for (skip(); !text.empty(); skip())
+		{
 			const std::string_view word = text.substr(0, text.find_first_of(text.front() == ';' ? "\n" : " \t\r\n\v\f,;"));
 			if (word.front() != ';')
 			{
@@ -658,14 +660,7 @@ template <class T> std::vector<T> FbxFile::arrayOf(const FbxNode& node, const st
 	return numbers;
 }
 
-std::vector<double> FbxFile::numbersOf(const FbxNode& node, const std::string& where) const
-{
-	return arrayOf<double>(node, where);
-}
-
-std::vector<int64_t> FbxFile::wholesOf(const FbxNode& node, const std::string& where) const
-{
-	return arrayOf<int64_t>(node, where);
-}
+template std::vector<double> FbxFile::arrayOf(const FbxNode& node, const std::string& where) const;
+template std::vector<int64_t> FbxFile::arrayOf(const FbxNode& node, const std::string& where) const;
 
 } // namespace nook

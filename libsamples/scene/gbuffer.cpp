@@ -9,7 +9,6 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -107,7 +106,7 @@ public:
 	glm::dvec3 normalAt(int x, int y) const
 	{
 		const glm::dvec3 position = positionAt(x, y);
-		const glm::dvec3 towards = -glm::normalize(lineAt(x, y).along);
+		const glm::dvec3 towards = -glm::normalize(m_projector.lineOf({x + 0.5, y + 0.5}).along);
 		const glm::dvec3 right = along(x, y, 1, 0, position);
 		const glm::dvec3 down = along(x, y, 0, 1, position);
 		glm::dvec3 normal = glm::cross(down, right);
@@ -133,15 +132,9 @@ private:
 		return static_cast<std::size_t>(y) * static_cast<std::size_t>(m_gbuffer.width_px) + static_cast<std::size_t>(x);
 	}
 
-	ViewLine lineAt(int x, int y) const
-	{
-		return m_projector.lineOf({x + 0.5, y + 0.5});
-	}
-
 	glm::dvec3 positionAt(int x, int y) const
 	{
-		const ViewLine line = lineAt(x, y);
-		return line.at + static_cast<double>(m_gbuffer.depth[index(x, y)]) * line.along;
+		return positionOf(m_gbuffer, m_projector, x, y);
 	}
 
 	// How badly the side (dx, dy) continues to the pixel; requires the nearer neighbour.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/gbuffer_file.h"
 
-#include "core/error.h"
 #include "core/round.h"
 #include "core/text.h"
-#include "scene/gbuffer.h"
+#include "core/words.h"
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
@@ -25,21 +25,13 @@ namespace
 ImageMatrix imageMatrix(const std::string& key, const glm::dmat4& m, bool wide)
 {
 	ImageMatrix matrix{key, {}, wide};
-	for (int i = 0; i < 16; ++i)
-	{
-		matrix.values[static_cast<std::size_t>(i)] = m[i / 4][i % 4];
-	}
+	std::copy_n(glm::value_ptr(m), matrix.values.size(), matrix.values.begin());
 	return matrix;
 }
 
 glm::dmat4 matrixOf(const ImageMatrix& matrix)
 {
-	glm::dmat4 m;
-	for (int i = 0; i < 16; ++i)
-	{
-		m[i / 4][i % 4] = matrix.values[static_cast<std::size_t>(i)];
-	}
-	return m;
+	return glm::make_mat4(matrix.values.data());
 }
 
 Image readWhole(const std::string& path)
@@ -47,8 +39,7 @@ Image readWhole(const std::string& path)
 	Image image = readImage(path);
 	if (image.cropped)
 	{
-		throw Error(ExitCode::invalid_input,
-					path + ": data window: found one that differs from the display window, expected equal windows");
+		refuseInput(path + ": data window", "one that differs from the display window", "equal windows");
 	}
 	return image;
 }
@@ -59,9 +50,8 @@ void crop(Image& image, const std::string& path, const std::array<int, 4>& viewp
 	const auto [x, y, width, height] = viewport;
 	if (x < 0 || y < 0 || width < 1 || height < 1 || x > image.width_px - width || y > image.height_px - height)
 	{
-		throw Error(ExitCode::invalid_input, path + ": found " + std::to_string(image.width_px) + " x " +
-												 std::to_string(image.height_px) +
-												 " pixels, expected all of the rectangle among them (viewport)");
+		refuseInput(path, std::to_string(image.width_px) + " x " + std::to_string(image.height_px) + " pixels",
+					"all of the rectangle among them (viewport)");
 	}
 	const auto channels = static_cast<std::ptrdiff_t>(image.channels.size());
 	std::vector<float> values;
@@ -139,58 +129,14 @@ Projector projectorFor(const GBufferFile& file, const glm::dmat4& projection)
 	}
 }
 
-glm::vec3 toUnit(const glm::dvec3& n)
+// Three channels of one layer.
+struct NormalChannels
 {
-	return glm::vec3(glm::normalize(n));
-}
-
-// Reads the file's normals into unit vectors in view space.
-void readNormals(GBuffer& gbuffer, const GBufferFile& file, const GBufferImport& import, const Projector& projector)
-{
-	const NormalChannels channels = normalChannels(file.image, file.path, import.normal_channels);
-	const glm::dmat3 turn(gbuffer.view.camera_from_world);
-	std::size_t seen = 0;
-	std::size_t averted = 0;
-	gbuffer.normals.assign(gbuffer.depth.size(), glm::vec3(0.0F));
-	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
-	{
-		if (std::isinf(gbuffer.depth[i]))
-		{
-			continue;
-		}
-		glm::dvec3 n(file.image.at(i, channels.x), file.image.at(i, channels.y), file.image.at(i, channels.z));
-		if (import.normal_range == NormalRange::zero_to_one)
-		{
-			n = 2.0 * n - glm::dvec3(1.0);
-		}
-		const double length = glm::length(n);
-		// Interpolated normals are shorter if vertices disagree, by half at 120°; anything beyond is no normal in this encoding.
-		if (!(length > 0.5 && length < 1.5))
-		{
-			file.refusePixel("normals " + channels.name, i, "a length of " + shortText(length),
-							 "1 (normal-range zero-to-one where 0 to 1 stands for -1 to 1)");
-		}
-		n = import.normal_space == NormalSpace::world ? turn * n : n;
-		gbuffer.normals[i] = toUnit(n);
-		const auto width = static_cast<std::size_t>(gbuffer.width_px);
-		const ViewLine line = projector.lineOf({static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5});
-		seen += 1;
-		averted += glm::dot(n, line.along) > 0.0 ? 1U : 0U;
-	}
-	if (2 * averted > seen)
-	{
-		file.refuse("normals " + channels.name, std::to_string(100 * averted / seen) + " % of them turned away from the camera",
-					"normals of what the camera sees, in view space with +z towards the camera, or in world space (normal-space)");
-	}
-}
-
-std::string lower(std::string_view text)
-{
-	std::string result(text);
-	std::transform(result.begin(), result.end(), result.begin(),
-				   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-	return result;
-}
+	std::string name; // "N", "ViewLayer.Normal"
+	int x = -1;
+	int y = -1;
+	int z = -1;
+};
 
 // "ViewLayer.Depth.Z": layer "ViewLayer.Depth", last part "z"; the layer's own last part is "depth". Both in lower case.
 struct Name
@@ -205,27 +151,16 @@ Name partsOf(const std::string& channel)
 	const std::size_t dot = channel.rfind('.');
 	if (dot == std::string::npos)
 	{
-		return {"", lower(channel), ""};
+		return {"", lowered(channel), ""};
 	}
 	const std::string layer = channel.substr(0, dot);
 	const std::size_t earlier = layer.rfind('.');
-	return {layer, lower(std::string_view(channel).substr(dot + 1)),
-			lower(earlier == std::string::npos ? layer : layer.substr(earlier + 1))};
-}
-
-std::string listed(const Image& image)
-{
-	std::string names;
-	for (const std::string& channel : image.channels)
-	{
-		names += (names.empty() ? "" : ", ") + channel;
-	}
-	return names;
+	return {layer, lowered(channel.substr(dot + 1)), lowered(earlier == std::string::npos ? layer : layer.substr(earlier + 1))};
 }
 
 [[noreturn]] void refuse(const Image& image, const std::string& path, const std::string& expected)
 {
-	throw Error(ExitCode::invalid_input, path + ": channels: found " + listed(image) + ", expected " + expected);
+	refuseInput(path + ": channels", commaList(image.channels), expected);
 }
 
 int indexIn(const Image& image, const std::string& layer, std::string_view last)
@@ -284,15 +219,9 @@ int onlyOfRank(const Image& image, int rank)
 // −1: none, −2: several.
 int depthByName(const Image& image)
 {
-	if (const int index = image.channel("Z"); index >= 0)
-	{
-		return index;
-	}
-	if (const int index = onlyOfRank(image, 1); index != -1)
-	{
-		return index;
-	}
-	return onlyOfRank(image, 2);
+	const int z = image.channel("Z");
+	const int called = onlyOfRank(image, 1);
+	return z >= 0 ? z : called != -1 ? called : onlyOfRank(image, 2);
 }
 
 // Every layer that may hold normals, without duplicates.
@@ -304,18 +233,94 @@ std::vector<NormalChannels> normalLayers(const Image& image)
 		const Name name = partsOf(channel);
 		const bool called = name.before == "n" || name.before == "normal" || name.before == "normals";
 		const bool first = name.last == "x" || name.last == "r";
-		if (called && first)
+		if (const std::optional<NormalChannels> found = vectorOf(image, name.layer); called && first && found)
 		{
-			if (const std::optional<NormalChannels> found = vectorOf(image, name.layer))
-			{
-				layers.push_back(*found);
-			}
+			layers.push_back(*found);
 		}
 	}
 	return layers;
 }
 
+// The layer `wanted`; if that is empty: N, else the only one whose last name part is n, normal or normals (case-insensitive). Its
+// channels end in X, Y, Z or R, G, B. Throws Error (invalid_input) with the list of channels.
+NormalChannels normalChannels(const Image& image, const std::string& path, const std::string& wanted)
+{
+	if (!wanted.empty())
+	{
+		const std::optional<NormalChannels> found = vectorOf(image, wanted);
+		if (!found)
+		{
+			refuse(image, path, wanted + ".X, " + wanted + ".Y and " + wanted + ".Z among them");
+		}
+		return *found;
+	}
+	if (const std::optional<NormalChannels> found = vectorOf(image, "N"))
+	{
+		return *found;
+	}
+	const std::vector<NormalChannels> layers = normalLayers(image);
+	if (layers.size() != 1)
+	{
+		refuse(image, path,
+			   layers.empty() ? "normals N.X, N.Y, N.Z (normal-channels names others), or from depth (normals from-depth)"
+							  : "one layer of normals alone (normal-channels picks one)");
+	}
+	return layers.front();
+}
+
+// Reads the file's normals into unit vectors in view space.
+void readNormals(GBuffer& gbuffer, const GBufferFile& file, const GBufferImport& import, const Projector& projector)
+{
+	const NormalChannels channels = normalChannels(file.image, file.path, import.normal_channels);
+	const glm::dmat3 turn(gbuffer.view.camera_from_world);
+	std::size_t seen = 0;
+	std::size_t averted = 0;
+	gbuffer.normals.assign(gbuffer.depth.size(), glm::vec3(0.0F));
+	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
+	{
+		if (std::isinf(gbuffer.depth[i]))
+		{
+			continue;
+		}
+		glm::dvec3 n(file.image.at(i, channels.x), file.image.at(i, channels.y), file.image.at(i, channels.z));
+		if (import.normal_range == NormalRange::zero_to_one)
+		{
+			n = 2.0 * n - glm::dvec3(1.0);
+		}
+		const double length = glm::length(n);
+		// Interpolated normals are shorter if vertices disagree, by half at 120°; anything beyond is no normal in this encoding.
+		if (!(length > 0.5 && length < 1.5))
+		{
+			file.refusePixel("normals " + channels.name, i, "a length of " + shortText(length),
+							 "1 (normal-range zero-to-one where 0 to 1 stands for -1 to 1)");
+		}
+		n = import.normal_space == NormalSpace::world ? turn * n : n;
+		gbuffer.normals[i] = glm::vec3(glm::normalize(n));
+		const auto width = static_cast<std::size_t>(gbuffer.width_px);
+		const ViewLine line = projector.lineOf({static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5});
+		seen += 1;
+		averted += glm::dot(n, line.along) > 0.0 ? 1U : 0U;
+	}
+	if (2 * averted > seen)
+	{
+		file.refuse("normals " + channels.name, std::to_string(100 * averted / seen) + " % of them turned away from the camera",
+					"normals of what the camera sees, in view space with +z towards the camera, or in world space (normal-space)");
+	}
+}
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Reads a length; +inf for sky. Throws like readGBuffer.
+double metresOf(const GBufferFile& file, int channel, std::size_t pixel, double sky_depth_m)
+{
+	const auto value = static_cast<double>(file.image.at(pixel, channel));
+	if (!(value > 0.0))
+	{
+		file.refusePixel(file.channelName(channel), pixel, shortText(value),
+						 "metres in front of the camera, above 0, or infinity for sky");
+	}
+	return value >= sky_depth_m ? kInfinity : value;
+}
 
 // Half a step of an integer depth buffer; 0 for floats. A 16- or 24-bit buffer holds multiples of 1/(2ᵇ − 1), rounded to the file's
 // floats; at 24 bits all floats above ½ are such multiples, and half a step is their own rounding.
@@ -458,31 +463,6 @@ int depthChannel(const Image& image, const std::string& path, const std::string&
 		   std::string(index == -2 ? "one alone" : "one") + " that is depth by its name, such as Z (depth-channel picks one)");
 }
 
-NormalChannels normalChannels(const Image& image, const std::string& path, const std::string& wanted)
-{
-	if (!wanted.empty())
-	{
-		const std::optional<NormalChannels> found = vectorOf(image, wanted);
-		if (!found)
-		{
-			refuse(image, path, wanted + ".X, " + wanted + ".Y and " + wanted + ".Z among them");
-		}
-		return *found;
-	}
-	if (const std::optional<NormalChannels> found = vectorOf(image, "N"))
-	{
-		return *found;
-	}
-	const std::vector<NormalChannels> layers = normalLayers(image);
-	if (layers.size() != 1)
-	{
-		refuse(image, path,
-			   layers.empty() ? "normals N.X, N.Y, N.Z (normal-channels names others), or from depth (normals from-depth)"
-							  : "one layer of normals alone (normal-channels picks one)");
-	}
-	return layers.front();
-}
-
 bool looksLikeGBuffer(const Image& image)
 {
 	return depthByName(image) >= 0;
@@ -499,7 +479,7 @@ std::string shortText(double value)
 
 void GBufferFile::refuse(const std::string& element, const std::string& found, const std::string& expected) const
 {
-	throw Error(ExitCode::invalid_input, path + ": " + element + ": found " + found + ", expected " + expected);
+	refuseInput(path + ": " + element, found, expected);
 }
 
 void GBufferFile::refusePixel(const std::string& channel, std::size_t pixel, const std::string& found,
@@ -507,17 +487,6 @@ void GBufferFile::refusePixel(const std::string& channel, std::size_t pixel, con
 {
 	const auto width = static_cast<std::size_t>(image.width_px);
 	refuse(channel + ", pixel " + std::to_string(pixel % width) + "," + std::to_string(pixel / width), found, expected);
-}
-
-double metresOf(const GBufferFile& file, int channel, std::size_t pixel, double sky_depth_m)
-{
-	const auto value = static_cast<double>(file.image.at(pixel, channel));
-	if (!(value > 0.0))
-	{
-		file.refusePixel(file.channelName(channel), pixel, shortText(value),
-						 "metres in front of the camera, above 0, or infinity for sky");
-	}
-	return value >= sky_depth_m ? kInfinity : value;
 }
 
 DepthReader::DepthReader(const GBufferFile& file, const GBufferImport& import, int channel, const Projector& projector)

@@ -31,9 +31,6 @@ struct GBufferFile
 // For errors: six digits, or the name of a non-finite value.
 std::string shortText(double value);
 
-// Reads a length; +inf for sky. Throws like readGBuffer.
-double metresOf(const GBufferFile& file, int channel, std::size_t pixel, double sky_depth_m);
-
 // Keeps references to all its arguments.
 class DepthReader
 {
@@ -64,21 +61,6 @@ private:
 	double m_half_step = 0.0; // for device depth
 	double m_far_device = 1.0;
 };
-
-// Recognises a G-buffer's channels by the names that programs give them.
-
-// Three channels of one layer.
-struct NormalChannels
-{
-	std::string name; // "N", "ViewLayer.Normal"
-	int x = -1;
-	int y = -1;
-	int z = -1;
-};
-
-// The layer `wanted`; if that is empty: N, else the only one whose last name part is n, normal or normals (case-insensitive). Its
-// channels end in X, Y, Z or R, G, B. Throws Error (invalid_input) with the list of channels.
-NormalChannels normalChannels(const Image& image, const std::string& path, const std::string& wanted);
 
 // True if a depth channel and normals can be recognised by name.
 bool looksLikeGBuffer(const Image& image);

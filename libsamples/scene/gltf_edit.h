@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Adds baked values to a glTF file and leaves everything else in it as it is.
+// Edits a glTF file and leaves everything else in it as it is; adds baked values to it.
 #pragma once
 
 #include "scene/gltf_file.h"
@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,58 @@
 
 namespace nook
 {
+
+inline constexpr std::size_t kNoNumber = SIZE_MAX;
+
+// A member that is an index or a count, or a text; `otherwise` or "" for anything else.
+std::size_t numberIn(const nlohmann::ordered_json& item, const std::string& field, std::size_t otherwise = kNoNumber);
+std::string textIn(const nlohmann::ordered_json& item, const char* field);
+
+// The members of a file in their order, without an earlier bake, decompressed, and in one buffer if its form changes.
+class GltfEditor
+{
+public:
+	using Document = nlohmann::ordered_json;
+
+	// `output`: a name that says the form of the file to make. Throws Error: unsupported for asset.extras that are no object; like
+	// checkGltf().
+	GltfEditor(const GltfFile& of, const std::string& output);
+
+	[[noreturn]] void fail(const std::string& where, const std::string& found, const std::string& expected,
+						   ExitCode code = ExitCode::invalid_input) const;
+
+	// A list of the document, made if it is missing, which may move others.
+	Document& items(const char* name);
+
+	// Return the index. Accessors go to a view of elements of their size.
+	std::size_t addView(Document view, std::string_view bytes);
+	std::size_t addAccessor(const char* type, uint64_t component, std::size_t count, const std::string& bytes);
+	std::size_t bytesAdded() const;
+
+	// The file's bytes, with a record of the bake that allows to undo it (null: none). Call once.
+	std::string take(const std::string& output, const Document& record);
+
+	GltfFile file;
+	Document json;
+	std::string compression; // that the file had
+	std::string earlier;     // target of an earlier bake that is still there
+
+private:
+	void undo();
+	void decompress();
+	void setBounds(std::size_t accessor);
+	void gather();
+	void placeViews();
+	void rebase(const std::string& output);
+	std::string& chunk();
+
+	Document m_before; // to undo the bake
+	bool m_to_binary = false;
+	std::optional<std::string> m_gathered;             // the only buffer
+	std::size_t m_view_before = 0;                     // views of the file
+	std::vector<std::string> m_added;                  // bytes of the views behind them
+	std::map<std::size_t, std::size_t> m_view_of_size; // of elements of that size
+};
 
 // Where a file stores visibility.
 enum class BakeTarget

@@ -2,16 +2,13 @@
 // This work is based on: Khronos Group, "EXT_meshopt_compression" and "KHR_draco_mesh_compression", glTF extensions.
 #include "scene/gltf_file.h"
 
-#include "core/error.h"
 #include "core/file.h"
 #include "core/isolate.h"
-#include "scene/load_parts.h"
+#include "core/words.h"
 #include "scene/mesh_codec.h"
 
 #include <array>
-#include <map>
 #include <span>
-#include <utility>
 
 namespace nook
 {
@@ -227,9 +224,12 @@ private:
 		const std::string where = m_file.path + ": " + primitive.element;
 		if (!NOOK_HAS_DRACO)
 		{
-			throw Error(ExitCode::unsupported, where + ": found KHR_draco_mesh_compression, which this build does not support "
-													   "(Debian's package libdraco-dev), expected what `gltf-transform copy IN.glb "
-													   "OUT.glb` makes of it");
+			refuseInput(where,
+						"KHR_draco_mesh_compression, which this build does not support "
+						"(Debian's package libdraco-dev)",
+						"what `gltf-transform copy IN.glb "
+						"OUT.glb` makes of it",
+						ExitCode::unsupported);
 		}
 		const std::size_t view = extension->indexNeeded("bufferView", m_file.root().count("bufferViews"));
 		DracoMesh made;
@@ -306,12 +306,7 @@ private:
 		from.values(mesh.indices, 3 * kMaxTriangles);
 		m_triangles += mesh.indices.size() / 3;
 		m_vertices += mesh.vertices;
-		if (m_triangles > kMaxTriangles || m_vertices > 3 * uint64_t{kMaxTriangles})
-		{
-			throw Error(ExitCode::invalid_input, mesh.where + ": found " + std::to_string(m_triangles) + " triangles of " +
-													 std::to_string(m_vertices) + " vertices so far, expected at most " +
-													 std::to_string(kMaxTriangles));
-		}
+		checkCounts(mesh.where, m_triangles, m_vertices, " so far");
 		for (const DracoAttribute& attribute : mesh.attributes)
 		{
 			const std::size_t size =

@@ -2,17 +2,13 @@
 #include "scene/gltf_file.h"
 
 #include "core/base64.h"
-#include "core/error.h"
 #include "core/file.h"
-#include "scene/load_parts.h"
+#include "core/words.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <string_view>
-#include <utility>
 
 namespace nook
 {
@@ -28,42 +24,32 @@ constexpr uint32_t kBinChunk = 0x004E4942;  // "BIN\0"
 	throw Error(ExitCode::invalid_input, path + ": " + what);
 }
 
-uint32_t wordAt(const std::string& bytes, std::size_t at)
-{
-	uint32_t word = 0;
-	for (std::size_t i = 0; i < 4; ++i)
-	{
-		word |= uint32_t{static_cast<unsigned char>(bytes[at + i])} << (8U * i);
-	}
-	return word;
-}
-
 // Splits a .glb into its chunks and returns the JSON text.
 std::string takeChunks(std::string bytes, GltfFile& file)
 {
-	if (bytes.size() < 20 || wordAt(bytes, 0) != kGlbMagic)
+	if (bytes.size() < 20 || littleEndian(bytes, 0, 4) != kGlbMagic)
 	{
 		refuseFile(file.path,
 				   "header: found " + std::to_string(bytes.size()) + " bytes that are not a binary glTF, expected \"glTF\" first");
 	}
-	if (wordAt(bytes, 4) != 2)
+	if (littleEndian(bytes, 4, 4) != 2)
 	{
-		refuseFile(file.path, "header: found version " + std::to_string(wordAt(bytes, 4)) + ", expected 2");
+		refuseFile(file.path, "header: found version " + std::to_string(littleEndian(bytes, 4, 4)) + ", expected 2");
 	}
-	if (wordAt(bytes, 8) > bytes.size())
+	if (littleEndian(bytes, 8, 4) > bytes.size())
 	{
-		refuseFile(file.path,
-				   "header: found " + std::to_string(bytes.size()) + " bytes, expected " + std::to_string(wordAt(bytes, 8)));
+		refuseFile(file.path, "header: found " + std::to_string(bytes.size()) + " bytes, expected " +
+								  std::to_string(littleEndian(bytes, 8, 4)));
 	}
-	const std::size_t end = wordAt(bytes, 8);
+	const std::size_t end = littleEndian(bytes, 8, 4);
 	std::string json;
 	std::size_t chunk_at = 0;
 	std::size_t chunk_size = 0;
 	std::size_t at = 12;
 	for (int chunk = 0; at + 8 <= end; ++chunk)
 	{
-		const std::size_t size = wordAt(bytes, at);
-		const uint32_t kind = wordAt(bytes, at + 4);
+		const std::size_t size = littleEndian(bytes, at, 4);
+		const uint64_t kind = littleEndian(bytes, at + 4, 4);
 		at += 8;
 		if (size > end - at)
 		{
@@ -125,11 +111,6 @@ void checkText(const std::string& text, const std::string& path)
 		refuseFile(path, "JSON: found " + std::to_string(values) + " values, expected at most " + std::to_string(kMost));
 	}
 }
-
-} // namespace
-
-namespace
-{
 
 void parseText(GltfFile& file)
 {
@@ -377,8 +358,7 @@ private:
 		const uint64_t size = regular ? std::filesystem::file_size(path, failed) : 0;
 		if (!regular || failed)
 		{
-			throw Error(ExitCode::file,
-						m_file.path + ": " + item.element + ": found no file " + path + ", expected the level's data");
+			refuseInput(m_file.path + ": " + item.element, "no file " + path, "the level's data", ExitCode::file);
 		}
 		checkInside(m_file.path, item.element + ".uri", path, m_file.settings);
 		addFile(m_file.files, path);
@@ -480,34 +460,30 @@ private:
 
 	void primitive(const JsonValue& item)
 	{
-		const std::optional<uint64_t> mode = item.whole("mode", 6);
-		static_cast<void>(mode);
+		static_cast<void>(item.whole("mode", 6));
 		item.index("material", m_root.count("materials"));
 		const JsonValue attributes = item.objectNeeded("attributes");
 		if (attributes.has("POSITION"))
 		{
 			const Accessor& positions = attribute(attributes, "POSITION", "VEC3");
 			m_used += (item.has("indices") ? 0 : positions.count) + item.count("targets") * positions.count;
-			for (const auto& [name, types] : {std::pair{"NORMAL", "VEC3"},
-											  {"TANGENT", "VEC4"},
-											  {"TEXCOORD_0", "VEC2"},
-											  {"TEXCOORD_1", "VEC2"},
-											  {"TEXCOORD_2", "VEC2"},
-											  {"TEXCOORD_3", "VEC2"},
-											  {"TEXCOORD_4", "VEC2"},
-											  {"TEXCOORD_5", "VEC2"},
-											  {"TEXCOORD_6", "VEC2"},
-											  {"TEXCOORD_7", "VEC2"},
-											  {"COLOR_0", "VEC3 VEC4"},
-											  {"JOINTS_0", "VEC4"},
-											  {"WEIGHTS_0", "VEC4"}})
+			const auto check = [&](const std::string& name, std::string_view types)
 			{
 				if (attributes.has(name) && attribute(attributes, name, types).count != positions.count)
 				{
 					attributes.fail(name, std::to_string(attribute(attributes, name, types).count) + " values",
 									std::to_string(positions.count) + ", as many as positions");
 				}
+			};
+			check("NORMAL", "VEC3");
+			check("TANGENT", "VEC4");
+			for (char set = '0'; set < '8'; ++set)
+			{
+				check(std::string("TEXCOORD_") + set, "VEC2");
 			}
+			check("COLOR_0", "VEC3 VEC4");
+			check("JOINTS_0", "VEC4");
+			check("WEIGHTS_0", "VEC4");
 		}
 		if (item.has("indices"))
 		{

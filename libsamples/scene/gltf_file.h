@@ -89,6 +89,18 @@ std::optional<std::vector<glm::dmat4>> instancesOf(GltfFile& file, const JsonVal
 // Translation × rotation × scale; the rotation is normalised to a unit quaternion (x, y, z, w), or ignored if it is zero.
 glm::dmat4 placeOf(glm::dvec3 translation, glm::dvec4 rotation, glm::dvec3 scale);
 
+// Appends a value as it lies in memory: glTF is little-endian, as every supported machine.
+template <class Value> void appendRaw(std::string& bytes, const Value& value)
+{
+	bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+// Appends zeros up to a multiple of four bytes.
+inline void padTo4(std::string& bytes)
+{
+	bytes.resize((bytes.size() + 3) / 4 * 4, '\0');
+}
+
 // The numbers of an accessor of a checked glTF file: any component type, normalised or not, strided, sparse, or zeros.
 
 class GltfValues

@@ -5,16 +5,14 @@
 // as floats, rejects a file for one empty primitive, and keeps transforms at 32 bits.
 #include "scene/gltf_file.h"
 
-#include "core/error.h"
+#include "core/words.h"
 
-#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <set>
 #include <tuple>
 
@@ -100,11 +98,10 @@ public:
 		{
 			place(node);
 		}
-		report(m_source.findings, "points-or-lines", m_elements);
-		report(m_source.findings, "missing-uvs", m_no_uvs);
-		report(m_source.findings, "posed-meshes", m_posed);
-		report(m_source.findings, "not-applied", m_not_applied);
-		report(m_source.findings, "transmission", m_transmits);
+		for (const auto& [id, tally] : m_tallies)
+		{
+			report(m_source.findings, id, tally);
+		}
 	}
 
 private:
@@ -269,7 +266,8 @@ private:
 				}
 				if (material.transmits && primitive.triangleCount() > 0)
 				{
-					m_transmits.add("material '" + material.material.name + "'", m_transmitting.insert(primitive.material).second);
+					m_tallies["transmission"].add("material '" + material.material.name + "'",
+												  m_transmitting.insert(primitive.material).second);
 				}
 				vertexAlpha(primitive);
 				if (m_file.second_set)
@@ -290,18 +288,13 @@ private:
 			for (const Primitive& primitive : mesh)
 			{
 				const std::size_t each = primitive.mode == kTriangles ? 3 : 1;
-				if (primitive.indices == nullptr || primitive.positions == nullptr || primitive.mode < kTriangles)
+				const bool is_asked =
+					primitive.indices != nullptr && primitive.positions != nullptr && primitive.mode >= kTriangles;
+				for (std::size_t i = 0; is_asked && i + each <= primitive.count(); i += each)
 				{
-					continue;
-				}
-				for (std::size_t i = 0; i + each <= primitive.count(); i += each)
-				{
-					bool inside = true;
-					for (std::size_t k = i; k < i + each; ++k)
-					{
-						inside = inside && primitive.vertexAt(k) < primitive.positions->count();
-					}
-					if (!inside)
+					const uint64_t greatest =
+						std::max({primitive.vertexAt(i), primitive.vertexAt(i + each / 2), primitive.vertexAt(i + each - 1)});
+					if (greatest >= primitive.positions->count())
 					{
 						tally.add(primitive.where + (each == 3 ? ", triangle " : ", index ") + std::to_string(i / each));
 					}
@@ -329,17 +322,11 @@ private:
 				}
 			}
 		}
-		if (triangles > kMaxTriangles || vertices > 3 * uint64_t{kMaxTriangles})
-		{
-			throw Error(ExitCode::invalid_input,
-						m_file.path + ": found " + std::to_string(triangles) + " triangles of " + std::to_string(vertices) +
-							" vertices, counting every instance, expected at most " + std::to_string(kMaxTriangles));
-		}
+		checkCounts(m_file.path, triangles, vertices, ", counting every instance");
 		if (meshes > kMaxMeshes)
 		{
-			throw Error(ExitCode::invalid_input, m_file.path + ": found " + std::to_string(meshes) +
-													 " primitives, counting every instance, expected at most " +
-													 std::to_string(kMaxMeshes));
+			refuseInput(m_file.path, std::to_string(meshes) + " primitives, counting every instance",
+						"at most " + std::to_string(kMaxMeshes));
 		}
 	}
 
@@ -373,7 +360,7 @@ private:
 			made.first_triangle = m_level.triangles.size();
 			made.around = isMarked(node, "nook_around");
 			made.closed = isMarked(node, "nook_closed");
-			m_elements.add("mesh '" + made.name + "'", primitive.elementCount());
+			m_tallies["points-or-lines"].add("mesh '" + made.name + "'", primitive.elementCount());
 			if (m_file.second_set == kPlacesSet && primitive.triangleCount() > 0)
 			{
 				m_source.places.push_back({node.index,
@@ -387,7 +374,7 @@ private:
 			if (primitive.uvs == nullptr && !primitive.ramp && made.triangle_count > 0 &&
 				m_source.materials[primitive.material].mask >= 0)
 			{
-				m_no_uvs.add("mesh '" + made.name + "'");
+				m_tallies["missing-uvs"].add("mesh '" + made.name + "'");
 			}
 		}
 	}
@@ -407,12 +394,12 @@ private:
 		const bool moves = !pose.weights.empty() || pose.joints != nullptr;
 		if (m_file.settings.pose == Pose::rest || (pose.joints != nullptr && !has_joints))
 		{
-			m_not_applied.add("node '" + item.name() + "'", moves && node.instance.value_or(0) == 0 ? 1 : 0);
+			m_tallies["not-applied"].add("node '" + item.name() + "'", moves && node.instance.value_or(0) == 0 ? 1 : 0);
 			pose = m_file.settings.pose == Pose::rest ? NodePose{} : NodePose{std::move(pose.weights), nullptr};
 		}
 		else
 		{
-			m_posed.add("node '" + item.name() + "'", moves && node.instance.value_or(0) == 0 ? 1 : 0);
+			m_tallies["posed-meshes"].add("node '" + item.name() + "'", moves && node.instance.value_or(0) == 0 ? 1 : 0);
 		}
 		return pose;
 	}
@@ -532,16 +519,12 @@ private:
 	std::map<std::size_t, GltfValues> m_values; // of the used accessors
 	std::vector<std::vector<Primitive>> m_meshes;
 	std::vector<std::size_t> m_uses; // of each mesh
-	Tally m_elements;
-	Tally m_no_uvs; // masked meshes without coordinates
+	SentTallies m_tallies;           // findings
 
 	std::size_t m_default_material; // for primitives without a material
 	std::map<std::tuple<std::size_t, double, bool>, std::size_t> m_variants;
 	std::set<std::size_t> m_transmitting; // materials
-	Tally m_transmits;
 	GltfPoses m_poses;
-	Tally m_posed;       // nodes
-	Tally m_not_applied; // nodes
 
 	// The transform of the current primitive, or of its current vertex with a skin.
 	glm::dmat4 m_world{1.0};

@@ -10,7 +10,6 @@
 
 #include <cmath>
 #include <limits>
-#include <map>
 #include <tuple>
 
 namespace nook
@@ -33,12 +32,17 @@ Wrap wrapOf(const JsonValue& sampler, std::string_view field)
 // (counter-clockwise, with v downward) and three.js; its GLSL sample rotates the other way.
 glm::dmat3 transformOf(const JsonValue& item)
 {
-	const std::vector<double> offset = item.numbers("offset", 2);
-	const std::vector<double> scale = item.numbers("scale", 2);
+	const auto pairOf = [&](std::string_view field, double fallback)
+	{
+		const std::vector<double> pair = item.numbers(field, 2);
+		return pair.empty() ? glm::dvec2(fallback) : glm::dvec2(pair[0], pair[1]);
+	};
+	const glm::dvec2 offset = pairOf("offset", 0.0);
+	const glm::dvec2 scale = pairOf("scale", 1.0);
 	const SinCos turn = sinCosOf(item.number("rotation", 0.0));
-	const glm::dmat3 scaled(scale.empty() ? 1.0 : scale[0], 0.0, 0.0, 0.0, scale.empty() ? 1.0 : scale[1], 0.0, 0.0, 0.0, 1.0);
+	const glm::dmat3 scaled(scale.x, 0.0, 0.0, 0.0, scale.y, 0.0, 0.0, 0.0, 1.0);
 	const glm::dmat3 turned(turn.cos, -turn.sin, 0.0, turn.sin, turn.cos, 0.0, 0.0, 0.0, 1.0);
-	const glm::dmat3 moved(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, offset.empty() ? 0.0 : offset[0], offset.empty() ? 0.0 : offset[1], 1.0);
+	const glm::dmat3 moved(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, offset.x, offset.y, 1.0);
 	return moved * turned * scaled;
 }
 
@@ -206,11 +210,10 @@ private:
 
 	void noteMissing(std::optional<std::size_t> image)
 	{
-		if (!image || !m_images[*image].has("uri") || m_images[*image].text("uri").starts_with("data:"))
+		if (image && m_images[*image].has("uri") && !m_images[*image].text("uri").starts_with("data:"))
 		{
-			return;
+			noteMissingFile(m_source, besideLevel(m_file.path, unescaped(m_images[*image].text("uri"))));
 		}
-		noteMissingFile(m_source, besideLevel(m_file.path, unescaped(m_images[*image].text("uri"))));
 	}
 
 	int maskOf(const JsonValue& texture, std::size_t image)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/error.h"
+#include "core/words.h"
 #include "scene/gltf_file.h"
 
 #include <glm/gtc/quaternion.hpp>
@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -52,14 +53,9 @@ std::vector<glm::dmat4> worldsOf(const std::vector<JsonValue>& nodes)
 		}
 	}
 	std::vector<glm::dmat4> worlds(nodes.size(), glm::dmat4(1.0)); // of a node's parent until the node is processed
-	std::vector<std::size_t> open;
-	for (std::size_t i = 0; i < nodes.size(); ++i)
-	{
-		if (is_root[i])
-		{
-			open.push_back(i);
-		}
-	}
+	std::vector<std::size_t> open(nodes.size());
+	std::iota(open.begin(), open.end(), std::size_t{0});
+	std::erase_if(open, [&](std::size_t node) { return !is_root[node]; });
 	while (!open.empty())
 	{
 		const std::size_t node = open.back();
@@ -266,9 +262,8 @@ glm::dmat4 PoseValues::skin(const std::vector<glm::dmat4>& matrices, std::size_t
 		const double joint = indices.number(vertex, k);
 		if (!(joint < static_cast<double>(matrices.size())))
 		{
-			throw Error(ExitCode::invalid_input, where + ": found joint " + std::to_string(static_cast<uint64_t>(joint)) +
-													 " at vertex " + std::to_string(vertex) + ", expected one below " +
-													 std::to_string(matrices.size()));
+			refuseInput(where, "joint " + std::to_string(static_cast<uint64_t>(joint)) + " at vertex " + std::to_string(vertex),
+						"one below " + std::to_string(matrices.size()));
 		}
 		return matrices[static_cast<std::size_t>(joint)];
 	};
@@ -334,8 +329,7 @@ glm::dmat4 placeOf(glm::dvec3 translation, glm::dvec4 rotation, glm::dvec3 scale
 
 std::optional<std::vector<glm::dmat4>> instancesOf(GltfFile& file, const JsonValue& node, std::size_t most)
 {
-	const std::optional<JsonValue> extensions = node.object("extensions");
-	const std::optional<JsonValue> extension = extensions ? extensions->object("EXT_mesh_gpu_instancing") : std::nullopt;
+	const std::optional<JsonValue> extension = extensionOf(node, "EXT_mesh_gpu_instancing");
 	if (!extension || !node.has("mesh"))
 	{
 		return std::nullopt;

@@ -6,7 +6,6 @@
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
-#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -40,12 +39,6 @@ bool isIn(const Bounds& box, glm::dvec3 position)
 	return glm::all(glm::greaterThanEqual(position, box.least)) && glm::all(glm::lessThan(position, box.most));
 }
 
-std::array<glm::dvec3, 3> cornersOf(const Level& level, std::size_t triangle)
-{
-	const glm::uvec3& t = level.triangles[triangle];
-	return {level.positions[t.x], level.positions[t.y], level.positions[t.z]};
-}
-
 constexpr uint8_t kAway = 0;
 constexpr uint8_t kOwn = 1;
 constexpr uint8_t kAround = 2;
@@ -57,21 +50,21 @@ std::vector<uint8_t> placesOf(const Level& level, const CellSettings& settings)
 	Bounds near = settings.box;
 	for (std::size_t i = 0; i < places.size(); ++i)
 	{
-		const auto [a, b, c] = cornersOf(level, i);
-		if (isIn(settings.box, (a + b + c) / 3.0))
+		const glm::uvec3& t = level.triangles[i];
+		if (isIn(settings.box, (level.positions[t.x] + level.positions[t.y] + level.positions[t.z]) / 3.0))
 		{
 			places[i] = kOwn;
-			near.least = glm::min(near.least, glm::min(a, glm::min(b, c)));
-			near.most = glm::max(near.most, glm::max(a, glm::max(b, c)));
+			const Bounds bounds = boundsOf(level, i);
+			near = {glm::min(near.least, bounds.least), glm::max(near.most, bounds.most)};
 		}
 	}
 	near.least -= settings.around_m;
 	near.most += settings.around_m;
 	for (std::size_t i = 0; i < places.size(); ++i)
 	{
-		const auto [a, b, c] = cornersOf(level, i);
-		const bool reaches = glm::all(glm::lessThanEqual(glm::min(a, glm::min(b, c)), near.most)) &&
-							 glm::all(glm::greaterThanEqual(glm::max(a, glm::max(b, c)), near.least));
+		const Bounds bounds = boundsOf(level, i);
+		const bool reaches =
+			glm::all(glm::lessThanEqual(bounds.least, near.most)) && glm::all(glm::greaterThanEqual(bounds.most, near.least));
 		places[i] = places[i] == kOwn ? kOwn : reaches ? kAround : kAway;
 	}
 	return places;

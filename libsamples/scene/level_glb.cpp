@@ -2,13 +2,11 @@
 // This work is based on: Khronos Group, "glTF 2.0 Specification", ISO/IEC 12113:2022.
 #include "scene/level_glb.h"
 
-#include "core/error.h"
 #include "core/file.h"
 #include "core/image.h"
 #include "core/json_text.h"
-#include "scene/level.h"
-#include "scene/load.h"
-#include "scene/load_parts.h"
+#include "core/words.h"
+#include "scene/gltf_file.h"
 
 #include <nlohmann/json.hpp>
 
@@ -18,38 +16,11 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace nook
 {
 namespace
 {
-
-class GlbMaterials
-{
-public:
-	explicit GlbMaterials(const Level& level); // must outlive this object
-
-	// The file's number of a level's material, created on first use.
-	int indexOf(uint32_t material);
-
-	nlohmann::ordered_json materials = nlohmann::ordered_json::array();
-	nlohmann::ordered_json textures = nlohmann::ordered_json::array();
-	nlohmann::ordered_json samplers = nlohmann::ordered_json::array();
-	nlohmann::ordered_json images = nlohmann::ordered_json::array(); // "bufferView" is set later
-	std::vector<std::string> pictures;                               // PNG files of the images
-
-private:
-	int textureOf(std::size_t mask);
-
-	const Level& m_level;
-	std::vector<int> m_material; // file number of each material and mask, or −1
-	std::vector<int> m_mask;
-};
-
-// This work is based on: Khronos Group, "glTF 2.0 Specification", ISO/IEC 12113:2022, sections 3.8 and 3.9.
 
 using Json = nlohmann::ordered_json;
 
@@ -58,58 +29,74 @@ int wrapCode(Wrap wrap)
 	return wrap == Wrap::clamp ? 33071 : wrap == Wrap::mirror ? 33648 : 10497;
 }
 
-GlbMaterials::GlbMaterials(const Level& level)
-	: m_level(level), m_material(level.material_list.size(), -1), m_mask(level.masks.size(), -1)
+// glTF 2.0, sections 3.8 and 3.9.
+class GlbMaterials
 {
-}
-
-int GlbMaterials::indexOf(uint32_t index)
-{
-	int& made = m_material[index];
-	if (made >= 0)
+public:
+	// `level` must outlive this object.
+	explicit GlbMaterials(const Level& level)
+		: m_level(level), m_material(level.material_list.size(), -1), m_mask(level.masks.size(), -1)
 	{
+	}
+
+	// The file's number of a level's material, created on first use.
+	int indexOf(uint32_t index)
+	{
+		int& made = m_material[index];
+		if (made >= 0)
+		{
+			return made;
+		}
+		made = static_cast<int>(materials.size());
+		const Material& material = m_level.material_list[index];
+		Json item{{"name", material.name}};
+		if (material.alpha_mode != AlphaMode::opaque)
+		{
+			item["alphaMode"] = material.alpha_mode == AlphaMode::mask ? "MASK" : "BLEND";
+			item["pbrMetallicRoughness"]["baseColorFactor"] = {1.0, 1.0, 1.0, material.alpha};
+			if (material.alpha_mode == AlphaMode::mask)
+			{
+				item["alphaCutoff"] = material.cutoff;
+			}
+			if (material.mask >= 0)
+			{
+				item["pbrMetallicRoughness"]["baseColorTexture"]["index"] = textureOf(static_cast<std::size_t>(material.mask));
+			}
+		}
+		item["doubleSided"] = material.two_sided;
+		materials.push_back(item);
 		return made;
 	}
-	made = static_cast<int>(materials.size());
-	const Material& material = m_level.material_list[index];
-	Json item{{"name", material.name}};
-	if (material.alpha_mode != AlphaMode::opaque)
-	{
-		item["alphaMode"] = material.alpha_mode == AlphaMode::mask ? "MASK" : "BLEND";
-		item["pbrMetallicRoughness"]["baseColorFactor"] = {1.0, 1.0, 1.0, material.alpha};
-		if (material.alpha_mode == AlphaMode::mask)
-		{
-			item["alphaCutoff"] = material.cutoff;
-		}
-		if (material.mask >= 0)
-		{
-			item["pbrMetallicRoughness"]["baseColorTexture"]["index"] = textureOf(static_cast<std::size_t>(material.mask));
-		}
-	}
-	item["doubleSided"] = material.two_sided;
-	materials.push_back(item);
-	return made;
-}
 
-// Texture, sampler and image share one number.
-int GlbMaterials::textureOf(std::size_t index)
-{
-	int& made = m_mask[index];
-	if (made < 0)
-	{
-		made = static_cast<int>(textures.size());
-		const Mask& mask = m_level.masks[index];
-		textures.push_back({{"sampler", made}, {"source", made}});
-		const int filter = mask.nearest ? 9728 : 9729;
-		samplers.push_back(
-			{{"magFilter", filter}, {"minFilter", filter}, {"wrapS", wrapCode(mask.wrap_u)}, {"wrapT", wrapCode(mask.wrap_v)}});
-		images.push_back({{"name", mask.name}, {"mimeType", "image/png"}});
-		pictures.push_back(alphaPngBytes(mask.width_px, mask.height_px, mask.alpha));
-	}
-	return made;
-}
+	Json materials = Json::array();
+	Json textures = Json::array();
+	Json samplers = Json::array();
+	Json images = Json::array();       // "bufferView" is set later
+	std::vector<std::string> pictures; // PNG files of the images
 
-using Json = nlohmann::ordered_json;
+private:
+	// Texture, sampler and image share one number.
+	int textureOf(std::size_t index)
+	{
+		int& made = m_mask[index];
+		if (made < 0)
+		{
+			made = static_cast<int>(textures.size());
+			const Mask& mask = m_level.masks[index];
+			textures.push_back({{"sampler", made}, {"source", made}});
+			const int filter = mask.nearest ? 9728 : 9729;
+			samplers.push_back(
+				{{"magFilter", filter}, {"minFilter", filter}, {"wrapS", wrapCode(mask.wrap_u)}, {"wrapT", wrapCode(mask.wrap_v)}});
+			images.push_back({{"name", mask.name}, {"mimeType", "image/png"}});
+			pictures.push_back(alphaPngBytes(mask.width_px, mask.height_px, mask.alpha));
+		}
+		return made;
+	}
+
+	const Level& m_level;
+	std::vector<int> m_material; // file number of each material and mask, or −1
+	std::vector<int> m_mask;
+};
 
 static_assert(std::endian::native == std::endian::little, "glTF is little-endian, and numbers are written as they lie in memory");
 
@@ -117,11 +104,6 @@ constexpr int kFloats = 5126; // component types
 constexpr int kUints = 5125;
 constexpr int kVertexData = 34962; // targets of buffer views
 constexpr int kIndexData = 34963;
-
-template <class Value> void append(std::string& bytes, const Value& value)
-{
-	bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 
 Json listed(glm::dvec3 v)
 {
@@ -226,7 +208,7 @@ private:
 		{
 			for (int corner = 0; corner < 3 && m_level.materials[t] == material; ++corner)
 			{
-				append(m_indices, slotOf(m_level.triangles[t][corner], vertices));
+				appendRaw(m_indices, slotOf(m_level.triangles[t][corner], vertices));
 			}
 		}
 		const std::size_t indices = m_indices.size() / sizeof(uint32_t) - first_index;
@@ -240,7 +222,7 @@ private:
 			attributes["NORMAL"] = accessor(kNormals, "VEC3", m_normals.size(), vertices.size());
 			for (const uint32_t v : vertices)
 			{
-				append(m_normals, m_level.normals[v]);
+				appendRaw(m_normals, m_level.normals[v]);
 			}
 		}
 		if (m_level.material_list[material].mask >= 0)
@@ -248,7 +230,7 @@ private:
 			attributes["TEXCOORD_0"] = accessor(kUvs, "VEC2", m_uvs.size(), vertices.size());
 			for (const uint32_t v : vertices)
 			{
-				append(m_uvs, m_level.uvs[v]);
+				appendRaw(m_uvs, m_level.uvs[v]);
 			}
 		}
 		if (m_places != nullptr)
@@ -288,7 +270,7 @@ private:
 			const glm::vec3 position(m_level.positions[v] - m_origin);
 			least = glm::min(least, position);
 			most = glm::max(most, position);
-			append(m_positions, position);
+			appendRaw(m_positions, position);
 		}
 		m_accessors[made]["min"] = listed(least);
 		m_accessors[made]["max"] = listed(most);
@@ -380,12 +362,12 @@ private:
 	{
 		if (bytes.size() > kMaxFileBytes - buffer.size())
 		{
-			throw Error(ExitCode::unsupported, m_level.name + ": found " + std::to_string(m_level.triangles.size()) +
-												   " triangles, expected what a file of 1 GiB holds");
+			refuseInput(m_level.name, std::to_string(m_level.triangles.size()) + " triangles", "what a file of 1 GiB holds",
+						ExitCode::unsupported);
 		}
 		m_views.push_back({{"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", bytes.size()}});
 		buffer += bytes;
-		buffer.resize((buffer.size() + 3) / 4 * 4, '\0');
+		padTo4(buffer);
 		std::string().swap(bytes);
 	}
 
@@ -420,16 +402,16 @@ std::string glbContainer(std::string text, std::string_view chunk, std::string_v
 	const std::size_t size = 12 + 8 + text.size() + (padded > 0 ? 8 + padded : 0) + others.size();
 	if (size > kMaxFileBytes)
 	{
-		throw Error(ExitCode::unsupported, name + ": found a file of " + std::to_string(size) + " bytes, expected at most 1 GiB");
+		refuseInput(name, "a file of " + std::to_string(size) + " bytes", "at most 1 GiB", ExitCode::unsupported);
 	}
 	std::string bytes = "glTF";
-	append(bytes, uint32_t{2});
-	append(bytes, static_cast<uint32_t>(size));
-	append(bytes, static_cast<uint32_t>(text.size()));
+	appendRaw(bytes, uint32_t{2});
+	appendRaw(bytes, static_cast<uint32_t>(size));
+	appendRaw(bytes, static_cast<uint32_t>(text.size()));
 	bytes += "JSON" + text;
 	if (padded > 0)
 	{
-		append(bytes, static_cast<uint32_t>(padded));
+		appendRaw(bytes, static_cast<uint32_t>(padded));
 		bytes.append("BIN\0", 4);
 		bytes += chunk;
 		bytes.append(padded - chunk.size(), '\0');

@@ -3,9 +3,9 @@
 
 #include "core/content_hash.h"
 #include "core/decimal.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/parallel.h"
+#include "core/words.h"
 #include "core/work_units.h"
 #include "scene/builtin.h"
 #include "scene/level_glb.h"
@@ -42,7 +42,7 @@ void checkReadable(const std::string& path)
 	const std::filesystem::file_status status = std::filesystem::status(path, failed);
 	if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
 	{
-		throw Error(ExitCode::file, path + ": cannot be read: found a folder or device, expected a file");
+		refuseInput(path + ": cannot be read", "a folder or device", "a file", ExitCode::file);
 	}
 	const std::uintmax_t size = std::filesystem::file_size(path, failed);
 	if (!failed && size > kMaxFileBytes)
@@ -58,19 +58,22 @@ void checkReadable(const std::string& path)
 	if (std::fread(start.data(), 1, start.size(), file.get()) == start.size() && endingOf(path) == ".obj" &&
 		((start[0] == 0xFE && start[1] == 0xFF) || (start[0] == 0xFF && start[1] == 0xFE)))
 	{
-		throw Error(ExitCode::invalid_input, path + ": found UTF-16 text, expected UTF-8");
+		refuseInput(path, "UTF-16 text", "UTF-8");
 	}
 }
 
-Level readLevel(const std::string& path, const LoadSettings& settings, std::vector<Finding>& findings,
-				std::optional<uint32_t> second_set = {}, std::vector<glm::vec2>* second_uvs = nullptr,
-				std::vector<GltfPlace>* places = nullptr)
+bool isGltfName(const std::string& path)
+{
+	const std::string ending = endingOf(path);
+	return !path.starts_with(kBuiltinPrefix) && (ending == ".gltf" || ending == ".glb");
+}
+
+// Leaves findings, second coordinates and places in `source`.
+Level readLevel(const std::string& path, const LoadSettings& settings, LevelSource& source, std::optional<uint32_t> second_set = {})
 {
 	checkReadable(path);
-	const std::string ending = endingOf(path);
-	LevelSource source;
 	Level level;
-	if (ending == ".gltf" || ending == ".glb")
+	if (isGltfName(path))
 	{
 		source = readGltf(path, settings, level, second_set);
 	}
@@ -82,7 +85,7 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 	level.name = std::filesystem::path(path).filename().string();
 	if (level.triangles.empty())
 	{
-		throw Error(ExitCode::invalid_input, path + ": found no triangle, expected a surface");
+		refuseInput(path, "no triangle", "a surface");
 	}
 	finishMaterials(settings, source, level);
 	Tally missing;
@@ -91,23 +94,11 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 	std::unordered_set<std::string> seen;
 	for (const std::string& file : source.missing)
 	{
-		if (!seen.insert(file).second)
-		{
-			continue;
-		}
-		missing.add(file.starts_with(folder) ? file.substr(folder.size()) : file); // as the level names it, on any machine
+		const bool is_new = seen.insert(file).second;
+		missing.add(file.starts_with(folder) ? file.substr(folder.size()) : file, is_new ? 1 : 0); // as the level names it
 	}
 	report(source.findings, "missing-file", missing);
 	level.files = std::move(source.files);
-	findings = std::move(source.findings);
-	if (second_uvs != nullptr)
-	{
-		*second_uvs = std::move(source.second_uvs);
-	}
-	if (places != nullptr)
-	{
-		*places = std::move(source.places);
-	}
 	return level;
 }
 
@@ -117,7 +108,7 @@ void cleanAgain(Level& again, const std::string& name, const Level& level, std::
 	cleanLevel(again, silent(run), &second);
 	if (again.positions != level.positions) // triangles may be flipped by now (bake/bake.h)
 	{
-		throw Error(ExitCode::invalid_input, name + ": found other vertices when reading it again, expected an unchanged file");
+		refuseInput(name, "other vertices when reading it again", "an unchanged file");
 	}
 }
 
@@ -125,12 +116,12 @@ void cleanAgain(Level& again, const std::string& name, const Level& level, std::
 std::vector<glm::vec2> secondSet(const std::string& name, const LoadSettings& settings, const Level& level, uint32_t set,
 								 const RunSettings& run)
 {
-	std::vector<Finding> findings;
-	std::vector<glm::vec2> second;
-	Level again = readLevel(name, settings, findings, set, &second);
+	LevelSource source;
+	Level again = readLevel(name, settings, source, set);
+	std::vector<glm::vec2>& second = source.second_uvs;
 	cleanAgain(again, name, level, second, run);
 	const bool none = std::all_of(second.begin(), second.end(), [](glm::vec2 uv) { return std::isnan(uv.x); });
-	return none ? std::vector<glm::vec2>{} : second;
+	return none ? std::vector<glm::vec2>{} : std::move(second);
 }
 
 // Not yet cleaned; adds findings from reading.
@@ -147,78 +138,29 @@ Level readNamed(const std::string& name, const LoadSettings& settings, std::vect
 	}
 	if (!isLevelName(name))
 	{
-		throw Error(ExitCode::invalid_input, name + ": found the ending '" + endingOf(name) +
-												 "', expected .gltf, .glb, .obj, .fbx, .ply, .stl or builtin:NAME");
+		refuseInput(name, "the ending '" + endingOf(name) + "'", ".gltf, .glb, .obj, .fbx, .ply, .stl or builtin:NAME");
 	}
-	std::vector<Finding> found;
-	Level level = readLevel(name, settings, found);
-	findings.insert(findings.begin(), found.begin(), found.end()); // the last of a kind gives the first place (addFindings)
+	LevelSource source;
+	Level level = readLevel(name, settings, source);
+	findings.insert(findings.begin(), source.findings.begin(),
+					source.findings.end()); // the last of a kind gives the first place (addFindings)
 	return level;
-}
-
-void checkTogether(const std::string& name, const Level& before, const Level& added)
-{
-	const std::size_t triangles = before.triangles.size() + added.triangles.size();
-	const std::size_t vertices = before.positions.size() + added.positions.size();
-	if (triangles > kMaxTriangles || vertices > 3 * kMaxTriangles)
-	{
-		throw Error(ExitCode::invalid_input,
-					name + ": found " + std::to_string(triangles) + " triangles of " + std::to_string(vertices) +
-						" vertices with the levels before it, expected at most " + std::to_string(kMaxTriangles));
-	}
-}
-
-// For several levels, the first one's name.
-std::string nameOf(std::span<const PlacedLevel> levels, const std::string& first)
-{
-	return levels.size() == 1 ? first : first + " and " + std::to_string(levels.size() - 1) + " more";
 }
 
 void checkCleaned(const LoadedLevel& loaded, const std::string& name, const LoadSettings& settings)
 {
+	const std::vector<Finding>& findings = loaded.diagnosis.findings;
 	if (loaded.level.triangles.empty())
 	{
-		const Finding& first = loaded.diagnosis.findings.front();
-		throw Error(ExitCode::invalid_input,
-					name + ": " + first.first + ": found " + first.id + " and no triangle that is left, expected a surface");
+		refuseInput(name + ": " + findings.front().first, findings.front().id + " and no triangle that is left", "a surface");
 	}
-	if (settings.strict && !loaded.diagnosis.findings.empty())
+	if (settings.strict && !findings.empty())
 	{
-		const Finding& first = loaded.diagnosis.findings.front();
-		const std::size_t more = loaded.diagnosis.findings.size() - 1;
-		throw Error(ExitCode::invalid_input,
-					name + ": " + first.first + ": found " + first.id + " (" + std::to_string(first.count) + ")" +
-						(more == 0 ? "" : " and " + std::to_string(more) + " more kinds of findings") + ", expected none (strict)");
+		const std::string more =
+			findings.size() == 1 ? "" : " and " + std::to_string(findings.size() - 1) + " more kinds of findings";
+		refuseInput(name + ": " + findings.front().first,
+					findings.front().id + " (" + std::to_string(findings.front().count) + ")" + more, "none (strict)");
 	}
-}
-
-LoadedLevel readLevels(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run)
-{
-	LoadedLevel loaded;
-	std::vector<Finding> findings;
-	std::optional<ProgressCounter> stage(std::in_place, run.progress, "level", levels.size());
-	for (const PlacedLevel& placed : levels)
-	{
-		Level level = readNamed(placed.name, settings, findings);
-		const std::string name = loaded.level.name.empty() ? level.name : loaded.level.name;
-		if (&placed == &levels.front() && placed.move == glm::dvec3(0.0))
-		{
-			loaded.level = std::move(level);
-		}
-		else
-		{
-			checkTogether(placed.name, loaded.level, level);
-			appendLevel(loaded.level, std::move(level), placed.move);
-		}
-		loaded.level.name = name;
-		stage->finishOne();
-	}
-	loaded.level.name = nameOf(levels, loaded.level.name);
-	stage.emplace(run.progress, "triangles");
-	loaded.diagnosis = cleanLevel(loaded.level, run);
-	addFindings(loaded.diagnosis, findings);
-	checkCleaned(loaded, levels.size() == 1 ? levels.front().name : loaded.level.name, settings);
-	return loaded;
 }
 
 void dropTriangles(Level& level, std::span<const uint8_t> keep)
@@ -335,203 +277,8 @@ void appendMaterials(Level& to, Level& from)
 	}
 }
 
-// Empty if a file cannot be read; reading the level reports why.
-std::vector<std::string> hashesOf(const std::vector<std::string>& files)
-{
-	std::vector<std::string> hashes;
-	for (const std::string& file : files)
-	{
-		std::error_code failed;
-		if (!std::filesystem::is_regular_file(file, failed))
-		{
-			return {};
-		}
-		try
-		{
-			hashes.push_back(hashOfFile(file));
-		}
-		catch (const Error&)
-		{
-			return {};
-		}
-	}
-	return hashes;
-}
-
-std::string keyOf(std::span<const PlacedLevel> levels, const LoadSettings& settings)
-{
-	ContentHash key;
-	key.add("level");
-	for (const PlacedLevel& placed : levels)
-	{
-		key.add(placed.name);
-		key.add(placed.move.x);
-		key.add(placed.move.y);
-		key.add(placed.move.z);
-	}
-	key.add(settings.unit_m);
-	key.add(static_cast<double>(settings.up));
-	key.add(settings.strict ? 1.0 : 0.0);
-	key.add(static_cast<double>(settings.max_texels));
-	key.add(settings.allow_outside ? 1.0 : 0.0);
-	key.add(static_cast<double>(settings.pose));
-	key.add(static_cast<double>(settings.tr));
-	return key.text();
-}
-
-bool isWhole(const LoadedLevel& loaded)
-{
-	return std::none_of(loaded.diagnosis.findings.begin(), loaded.diagnosis.findings.end(),
-						[](const Finding& finding) { return finding.id == "missing-file"; });
-}
-
-} // namespace
-
-bool isLevelName(const std::string& name)
-{
-	return name.starts_with(kBuiltinPrefix) || std::find(kEndings.begin(), kEndings.end(), endingOf(name)) != kEndings.end();
-}
-
-LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, const RunSettings& run)
-{
-	const PlacedLevel placed{name, glm::dvec3(0.0)};
-	return loadLevels({&placed, 1}, settings, run);
-}
-
-LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run)
-{
-	assert(!levels.empty());
-	const auto has_mtl = [](const PlacedLevel& placed)
-	{
-		return endingOf(placed.name) == ".obj";
-	};
-	if (settings.tr != TrMeaning::automatic && std::none_of(levels.begin(), levels.end(), has_mtl))
-	{
-		throw Error(ExitCode::usage, "tr: found with " + levels.front().name + ", expected an OBJ file, whose MTL files it is for");
-	}
-	return keptLevel(levels, settings, run, [&] { return readLevels(levels, settings, run); });
-}
-
-LoadedLevel loadLevel(Level level, bool strict, std::vector<uint32_t>& vertices, const RunSettings& run)
-{
-	std::vector<glm::vec2> halves(level.positions.size()); // of indices: 32-bit floats hold 16 bits
-	for (std::size_t i = 0; i < halves.size(); ++i)
-	{
-		halves[i] = {static_cast<float>(i >> 16U), static_cast<float>(i & 0xFFFFU)};
-	}
-	LoadedLevel loaded{std::move(level), {}};
-	loaded.diagnosis = cleanLevel(loaded.level, run, &halves);
-	LoadSettings settings;
-	settings.strict = strict;
-	checkCleaned(loaded, loaded.level.name, settings);
-	vertices.resize(halves.size());
-	std::transform(halves.begin(), halves.end(), vertices.begin(),
-				   [](glm::vec2 half) { return (static_cast<uint32_t>(half.x) << 16U) + static_cast<uint32_t>(half.y); });
-	return loaded;
-}
-
-std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings& settings, const Level& level,
-									 const RunSettings& run, uint32_t set)
-{
-	const std::string ending = endingOf(name);
-	if (name.starts_with(kBuiltinPrefix) || (ending != ".gltf" && ending != ".glb"))
-	{
-		return {};
-	}
-	const ProgressCounter stage(run.progress, "texture coordinates");
-	return secondSet(name, settings, level, set, run);
-}
-
-std::vector<GltfPlace> loadPlaces(const std::string& name, const LoadSettings& settings, const Level& level, const RunSettings& run)
-{
-	const ProgressCounter stage(run.progress, "places");
-	std::vector<Finding> findings;
-	std::vector<glm::vec2> numbers;
-	std::vector<GltfPlace> places;
-	Level again = readLevel(name, settings, findings, kPlacesSet, &numbers, &places);
-	const std::vector<glm::dvec3> positions = again.positions;
-	const std::vector<glm::vec3> normals = again.normals;
-	cleanAgain(again, name, level, numbers, run);
-	std::vector<uint32_t> now(positions.size(), UINT32_MAX);
-	for (std::size_t i = 0; i < numbers.size(); ++i)
-	{
-		now[(static_cast<std::size_t>(numbers[i].x) << 14U) + static_cast<std::size_t>(numbers[i].y)] = static_cast<uint32_t>(i);
-	}
-	std::map<std::array<double, 3>, std::vector<uint32_t>> at; // the level's vertices by position, if any is looked for
-	const auto nearest = [&](glm::dvec3 position, glm::vec3 normal)
-	{
-		for (uint32_t i = 0; at.empty() && i < again.positions.size(); ++i)
-		{
-			at[{again.positions[i].x, again.positions[i].y, again.positions[i].z}].push_back(i);
-		}
-		const std::vector<uint32_t>& there = at[{position.x, position.y, position.z}];
-		const auto further = [&](uint32_t a, uint32_t b)
-		{
-			return glm::dot(again.normals[a], normal) < glm::dot(again.normals[b], normal);
-		};
-		return there.empty() ? UINT32_MAX : *std::max_element(there.begin(), there.end(), further);
-	};
-	for (GltfPlace& place : places)
-	{
-		for (auto& [of_file, of_level] : place.vertices)
-		{
-			const uint32_t before = of_level;
-			of_level = now[before];
-			if (of_level == UINT32_MAX && glm::all(glm::lessThan(glm::abs(positions[before]), glm::dvec3(kFarthest_m))))
-			{
-				of_level = nearest(positions[before], normals[before]);
-			}
-		}
-		std::erase_if(place.vertices, [](const auto& vertex) { return vertex.second == UINT32_MAX; });
-	}
-	return places;
-}
-
-BakedValues loadBakedValues(const std::string& path, const Level& level, const RunSettings& run)
-{
-	const std::string ending = endingOf(path);
-	const bool is_gltf = !path.starts_with(kBuiltinPrefix) && (ending == ".gltf" || ending == ".glb");
-	const ProgressCounter stage(run.progress, "baked values");
-	for (std::size_t kind = 0; is_gltf && kind < kBakedSets.size(); ++kind)
-	{
-		const std::vector<glm::vec2> values = secondSet(path, {}, level, kBakedSets[kind], run);
-		if (values.empty())
-		{
-			continue;
-		}
-		BakedValues baked;
-		baked.kind = static_cast<BakedKind>(kind);
-		const float least = baked.kind == BakedKind::visibility ? 0.0F : -1.0F;
-		for (const glm::vec2 value : values)
-		{
-			for (const float side : {value.x, value.y})
-			{
-				if (!std::isnan(value.x) && !(side >= least && side <= 1.0F))
-				{
-					throw Error(ExitCode::invalid_input, path + ": " + std::string(kBakedNames[kind]) + ": found " +
-															 numberText(static_cast<double>(side)) + ", expected values from " +
-															 (least < 0.0F ? "-1" : "0") + " to 1");
-				}
-			}
-			baked.front.push_back(value.x);
-			baked.back.push_back(value.y);
-		}
-		return baked;
-	}
-	throw Error(ExitCode::invalid_input, path + ": found no attribute _VISIBILITY, expected a file of nook bake");
-}
-
-void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std::vector<glm::vec2>* more)
-{
-	assert(keep.size() == level.triangles.size());
-	if (std::find(keep.begin(), keep.end(), 0) != keep.end() ||
-		std::any_of(level.meshes.begin(), level.meshes.end(), [](const Mesh& mesh) { return mesh.triangle_count == 0; }))
-	{
-		dropTriangles(level, keep);
-	}
-	dropVertices(level, threads, more);
-}
-
+// Appends the triangles, meshes, materials, masks, cameras and files of `from` to `to`, moved by `move` metres. Equal masks and
+// materials are shared. Cameras are renamed to be unique. Requires that the total numbers of vertices and triangles fit 32 bits.
 void appendLevel(Level& to, Level from, glm::dvec3 move)
 {
 	assert(to.positions.size() + from.positions.size() <= UINT32_MAX && to.triangles.size() + from.triangles.size() <= UINT32_MAX);
@@ -567,6 +314,252 @@ void appendLevel(Level& to, Level from, glm::dvec3 move)
 	}
 }
 
+LoadedLevel readLevels(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run)
+{
+	LoadedLevel loaded;
+	std::vector<Finding> findings;
+	std::optional<ProgressCounter> stage(std::in_place, run.progress, "level", levels.size());
+	for (const PlacedLevel& placed : levels)
+	{
+		Level level = readNamed(placed.name, settings, findings);
+		const std::string name = loaded.level.name.empty() ? level.name : loaded.level.name;
+		if (&placed == &levels.front() && placed.move == glm::dvec3(0.0))
+		{
+			loaded.level = std::move(level);
+		}
+		else
+		{
+			checkCounts(placed.name, loaded.level.triangles.size() + level.triangles.size(),
+						loaded.level.positions.size() + level.positions.size(), " with the levels before it");
+			appendLevel(loaded.level, std::move(level), placed.move);
+		}
+		loaded.level.name = name;
+		stage->finishOne();
+	}
+	if (levels.size() > 1)
+	{
+		loaded.level.name += " and " + std::to_string(levels.size() - 1) + " more";
+	}
+	stage.emplace(run.progress, "triangles");
+	loaded.diagnosis = cleanLevel(loaded.level, run);
+	addFindings(loaded.diagnosis, findings);
+	checkCleaned(loaded, levels.size() == 1 ? levels.front().name : loaded.level.name, settings);
+	return loaded;
+}
+
+// Empty if a file cannot be read; reading the level reports why.
+std::vector<std::string> hashesOf(const std::vector<std::string>& files)
+{
+	std::vector<std::string> hashes;
+	for (const std::string& file : files)
+	{
+		std::error_code failed;
+		if (!std::filesystem::is_regular_file(file, failed))
+		{
+			return {};
+		}
+		try
+		{
+			hashes.push_back(hashOfFile(file));
+		}
+		catch (const Error&)
+		{
+			return {};
+		}
+	}
+	return hashes;
+}
+
+std::string keyOf(std::span<const PlacedLevel> levels, const LoadSettings& settings)
+{
+	ContentHash key;
+	key.add("level");
+	for (const PlacedLevel& placed : levels)
+	{
+		key.add(placed.name);
+		for (int axis = 0; axis < 3; ++axis)
+		{
+			key.add(placed.move[axis]);
+		}
+	}
+	for (const double value :
+		 {settings.unit_m, static_cast<double>(settings.up), settings.strict ? 1.0 : 0.0, static_cast<double>(settings.max_texels),
+		  settings.allow_outside ? 1.0 : 0.0, static_cast<double>(settings.pose), static_cast<double>(settings.tr)})
+	{
+		key.add(value);
+	}
+	return key.text();
+}
+
+} // namespace
+
+bool isLevelName(const std::string& name)
+{
+	return name.starts_with(kBuiltinPrefix) || std::find(kEndings.begin(), kEndings.end(), endingOf(name)) != kEndings.end();
+}
+
+LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, const RunSettings& run)
+{
+	const PlacedLevel placed{name, glm::dvec3(0.0)};
+	return loadLevels({&placed, 1}, settings, run);
+}
+
+LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run)
+{
+	assert(!levels.empty());
+	const auto has_mtl = [](const PlacedLevel& placed)
+	{
+		return endingOf(placed.name) == ".obj";
+	};
+	if (settings.tr != TrMeaning::automatic && std::none_of(levels.begin(), levels.end(), has_mtl))
+	{
+		refuseInput("tr", "with " + levels.front().name, "an OBJ file, whose MTL files it is for", ExitCode::usage);
+	}
+	if (run.units == nullptr)
+	{
+		return readLevels(levels, settings, run);
+	}
+	// The parts of a command share what one of them read, unless a named file is missing.
+	LoadedLevel loaded;
+	std::vector<std::string> hashes;
+	const ProgressCounter stage(run.progress, "level");
+	run.units->store().once(
+		keyOf(levels, settings),
+		[&]
+		{
+			loaded = readLevels(levels, settings, run);
+			hashes = hashesOf(loaded.level.files);
+			const auto is_missing = [](const Finding& finding)
+			{
+				return finding.id == "missing-file";
+			};
+			return std::none_of(loaded.diagnosis.findings.begin(), loaded.diagnosis.findings.end(), is_missing) &&
+				   hashes.size() == loaded.level.files.size();
+		},
+		[&](Archive& archive)
+		{
+			archive(hashes, loaded);
+			archive.require(!archive.reads() || hashes == hashesOf(loaded.level.files));
+		});
+	return loaded;
+}
+
+LoadedLevel loadLevel(Level level, bool strict, std::vector<uint32_t>& vertices, const RunSettings& run)
+{
+	std::vector<glm::vec2> halves(level.positions.size()); // of indices: 32-bit floats hold 16 bits
+	for (std::size_t i = 0; i < halves.size(); ++i)
+	{
+		halves[i] = {static_cast<float>(i >> 16U), static_cast<float>(i & 0xFFFFU)};
+	}
+	LoadedLevel loaded{std::move(level), {}};
+	loaded.diagnosis = cleanLevel(loaded.level, run, &halves);
+	LoadSettings settings;
+	settings.strict = strict;
+	checkCleaned(loaded, loaded.level.name, settings);
+	vertices.resize(halves.size());
+	std::transform(halves.begin(), halves.end(), vertices.begin(),
+				   [](glm::vec2 half) { return (static_cast<uint32_t>(half.x) << 16U) + static_cast<uint32_t>(half.y); });
+	return loaded;
+}
+
+std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings& settings, const Level& level,
+									 const RunSettings& run, uint32_t set)
+{
+	if (!isGltfName(name))
+	{
+		return {};
+	}
+	const ProgressCounter stage(run.progress, "texture coordinates");
+	return secondSet(name, settings, level, set, run);
+}
+
+std::vector<GltfPlace> loadPlaces(const std::string& name, const LoadSettings& settings, const Level& level, const RunSettings& run)
+{
+	const ProgressCounter stage(run.progress, "places");
+	LevelSource source;
+	Level again = readLevel(name, settings, source, kPlacesSet);
+	std::vector<glm::vec2>& numbers = source.second_uvs;
+	const std::vector<glm::dvec3> positions = again.positions;
+	const std::vector<glm::vec3> normals = again.normals;
+	cleanAgain(again, name, level, numbers, run);
+	std::vector<uint32_t> now(positions.size(), UINT32_MAX);
+	for (std::size_t i = 0; i < numbers.size(); ++i)
+	{
+		now[(static_cast<std::size_t>(numbers[i].x) << 14U) + static_cast<std::size_t>(numbers[i].y)] = static_cast<uint32_t>(i);
+	}
+	std::map<std::array<double, 3>, std::vector<uint32_t>> at; // the level's vertices by position, if any is looked for
+	const auto nearest = [&](glm::dvec3 position, glm::vec3 normal)
+	{
+		for (uint32_t i = 0; at.empty() && i < again.positions.size(); ++i)
+		{
+			at[{again.positions[i].x, again.positions[i].y, again.positions[i].z}].push_back(i);
+		}
+		const std::vector<uint32_t>& there = at[{position.x, position.y, position.z}];
+		const auto further = [&](uint32_t a, uint32_t b)
+		{
+			return glm::dot(again.normals[a], normal) < glm::dot(again.normals[b], normal);
+		};
+		return there.empty() ? UINT32_MAX : *std::max_element(there.begin(), there.end(), further);
+	};
+	for (GltfPlace& place : source.places)
+	{
+		for (auto& [of_file, of_level] : place.vertices)
+		{
+			const uint32_t before = of_level;
+			of_level = now[before];
+			if (of_level == UINT32_MAX && glm::all(glm::lessThan(glm::abs(positions[before]), glm::dvec3(kFarthest_m))))
+			{
+				of_level = nearest(positions[before], normals[before]);
+			}
+		}
+		std::erase_if(place.vertices, [](const auto& vertex) { return vertex.second == UINT32_MAX; });
+	}
+	return std::move(source.places);
+}
+
+BakedValues loadBakedValues(const std::string& path, const Level& level, const RunSettings& run)
+{
+	const ProgressCounter stage(run.progress, "baked values");
+	for (std::size_t kind = 0; isGltfName(path) && kind < kBakedSets.size(); ++kind)
+	{
+		const std::vector<glm::vec2> values = secondSet(path, {}, level, kBakedSets[kind], run);
+		if (values.empty())
+		{
+			continue;
+		}
+		BakedValues baked;
+		baked.kind = static_cast<BakedKind>(kind);
+		const float least = baked.kind == BakedKind::visibility ? 0.0F : -1.0F;
+		for (const glm::vec2 value : values)
+		{
+			for (const float side : {value.x, value.y})
+			{
+				if (!std::isnan(value.x) && !(side >= least && side <= 1.0F))
+				{
+					throw Error(ExitCode::invalid_input, path + ": " + std::string(kBakedNames[kind]) + ": found " +
+															 numberText(static_cast<double>(side)) + ", expected values from " +
+															 (least < 0.0F ? "-1" : "0") + " to 1");
+				}
+			}
+			baked.front.push_back(value.x);
+			baked.back.push_back(value.y);
+		}
+		return baked;
+	}
+	refuseInput(path, "no attribute _VISIBILITY", "a file of nook bake");
+}
+
+void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std::vector<glm::vec2>* more)
+{
+	assert(keep.size() == level.triangles.size());
+	if (std::find(keep.begin(), keep.end(), 0) != keep.end() ||
+		std::any_of(level.meshes.begin(), level.meshes.end(), [](const Mesh& mesh) { return mesh.triangle_count == 0; }))
+	{
+		dropTriangles(level, keep);
+	}
+	dropVertices(level, threads, more);
+}
+
 void visit(Archive& archive, Material& material)
 {
 	archive(material.name, material.alpha_mode, material.cutoff, material.alpha, material.mask, material.mean_alpha,
@@ -599,32 +592,6 @@ void visit(Archive& archive, LoadedLevel& loaded)
 	Level& level = loaded.level;
 	archive(level.files, level.name, level.positions, level.normals, level.uvs, level.triangles, level.materials, level.meshes,
 			level.material_list, level.masks, level.cameras, loaded.diagnosis.findings);
-}
-
-LoadedLevel keptLevel(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run,
-					  const std::function<LoadedLevel()>& read)
-{
-	if (run.units == nullptr)
-	{
-		return read();
-	}
-	LoadedLevel loaded;
-	std::vector<std::string> hashes;
-	const ProgressCounter stage(run.progress, "level");
-	run.units->store().once(
-		keyOf(levels, settings),
-		[&]
-		{
-			loaded = read();
-			hashes = hashesOf(loaded.level.files);
-			return isWhole(loaded) && hashes.size() == loaded.level.files.size();
-		},
-		[&](Archive& archive)
-		{
-			archive(hashes, loaded);
-			archive.require(!archive.reads() || hashes == hashesOf(loaded.level.files));
-		});
-	return loaded;
 }
 
 } // namespace nook

@@ -4,9 +4,9 @@
 //
 // Assimp gives 32-bit positions in the file's own units, and texture coordinates with v upward for every format. It triangulates
 // concave polygons incorrectly, so scene/triangulate.cpp does that here. FBX is read by fbx_source.cpp.
-#include "core/error.h"
 #include "core/file.h"
 #include "core/isolate.h"
+#include "core/words.h"
 #include "scene/cut_faces.h"
 #include "scene/fbx.h"
 #include "scene/load.h"
@@ -23,45 +23,14 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace nook
 {
 namespace
 {
-
-class AssimpFiles : public Assimp::DefaultIOSystem
-{
-public:
-	AssimpFiles(std::string level_path, const LoadSettings& settings) : m_level_path(std::move(level_path)), m_settings(settings) {}
-
-	bool Exists(const char* file) const override;
-	Assimp::IOStream* Open(const char* file, const char* mode) override;
-
-	std::vector<std::string> opened;  // without duplicates
-	std::vector<std::string> missing; // without duplicates
-	std::optional<Error> refused;     // reason for the first file that was rejected
-
-	// Read here because Assimp does not provide it:
-	MtlMaterials materials;
-	std::vector<glm::dvec3> exact;   // positions; empty: Assimp's 32 bits suffice. For OBJ by number, else in order
-	std::vector<std::string> solids; // names in an STL file, one per mesh
-
-private:
-	std::optional<std::string> levelText();
-	Assimp::IOStream* streamOfFile(const std::string& path, const char* mode);
-
-	std::string m_level_path;
-	LoadSettings m_settings;
-	bool m_has_read = false;           // the level's file
-	std::optional<std::string> m_text; // the level's text for Assimp; none: the file itself
-	std::string m_names;               // of the materials in the current MTL file
-};
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
@@ -85,76 +54,98 @@ Assimp::IOStream* streamOf(const std::string& bytes)
 	return new Assimp::MemoryIOStream(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()); // NOLINT
 }
 
-bool AssimpFiles::Exists(const char* file) const
+class AssimpFiles : public Assimp::DefaultIOSystem
 {
-	return isFile(pathOf(file)); // Assimp's own check opens it, and would block on a pipe
-}
+public:
+	AssimpFiles(std::string level_path, const LoadSettings& settings) : m_level_path(std::move(level_path)), m_settings(settings) {}
 
-Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode)
-{
-	const std::string path = pathOf(file);
-	if (!isFile(path))
+	bool Exists(const char* file) const override
 	{
-		addFile(missing, path);
-		return nullptr;
+		return isFile(pathOf(file)); // Assimp's own check opens it, and would block on a pipe
 	}
-	try
-	{
-		Assimp::IOStream* const stream = streamOfFile(path, mode);
-		addFile(stream == nullptr ? missing : opened, path);
-		return stream;
-	}
-	catch (const Error& error)
-	{
-		if (error.code() == ExitCode::file)
-		{
-			addFile(missing, path); // cannot be opened
-		}
-		else if (!refused)
-		{
-			refused = error; // Assimp would report a missing file, or something unrelated
-		}
-		return nullptr;
-	}
-}
 
-// Replacement text of the level's file for Assimp; none: use the file itself.
-std::optional<std::string> AssimpFiles::levelText()
-{
-	std::string bytes = readFile(m_level_path);
-	const bool marked = bytes.starts_with(kByteOrderMark); // Assimp would take the mark for a part of the first word
-	bytes.erase(0, marked ? kByteOrderMark.size() : 0);
-	const std::string ending = endingOf(m_level_path);
-	std::optional<std::string> repaired = ending == ".obj"   ? repairedObj(bytes, m_level_path, exact)
-										  : ending == ".ply" ? repairedPly(bytes, m_level_path, exact)
-										  : ending == ".stl" ? repairedStl(bytes, m_level_path, exact, solids)
-															 : std::nullopt;
-	return repaired || !marked ? std::move(repaired) : std::optional(std::move(bytes));
-}
-
-// Throws Error if the file must not be read, or is not what its name says.
-Assimp::IOStream* AssimpFiles::streamOfFile(const std::string& path, const char* mode)
-{
-	if (path == m_level_path)
+	Assimp::IOStream* Open(const char* file, const char* mode) override
 	{
-		if (!m_has_read) // opened once for its size, then for its text
+		const std::string path = pathOf(file);
+		if (!isFile(path))
 		{
-			m_text = levelText();
-			m_has_read = true;
+			addFile(missing, path);
+			return nullptr;
 		}
-		return m_text ? streamOf(*m_text) : DefaultIOSystem::Open(path.c_str(), mode);
+		try
+		{
+			Assimp::IOStream* const stream = streamOfFile(path, mode);
+			addFile(stream == nullptr ? missing : opened, path);
+			return stream;
+		}
+		catch (const Error& error)
+		{
+			if (error.code() == ExitCode::file)
+			{
+				addFile(missing, path); // cannot be opened
+			}
+			else if (!refused)
+			{
+				refused = error; // Assimp would report a missing file, or something unrelated
+			}
+			return nullptr;
+		}
 	}
-	const bool is_obj = endingOf(m_level_path) == ".obj";
-	checkInside(m_level_path, is_obj ? "mtllib" : "reference", path, m_settings);
-	if (!is_obj)
+
+	std::vector<std::string> opened;  // without duplicates
+	std::vector<std::string> missing; // without duplicates
+	std::optional<Error> refused;     // reason for the first file that was rejected
+
+	// Read here because Assimp does not provide it:
+	MtlMaterials materials;
+	std::vector<glm::dvec3> exact;   // positions; empty: Assimp's 32 bits suffice. For OBJ by number, else in order
+	std::vector<std::string> solids; // names in an STL file, one per mesh
+
+private:
+	// Replacement text of the level's file for Assimp; none: use the file itself.
+	std::optional<std::string> levelText()
 	{
-		return DefaultIOSystem::Open(path.c_str(), mode);
+		std::string bytes = readFile(m_level_path);
+		const bool marked = bytes.starts_with(kByteOrderMark); // Assimp would take the mark for a part of the first word
+		bytes.erase(0, marked ? kByteOrderMark.size() : 0);
+		const std::string ending = endingOf(m_level_path);
+		std::optional<std::string> repaired = ending == ".obj"   ? repairedObj(bytes, m_level_path, exact)
+											  : ending == ".ply" ? repairedPly(bytes, m_level_path, exact)
+											  : ending == ".stl" ? repairedStl(bytes, m_level_path, exact, solids)
+																 : std::nullopt;
+		return repaired || !marked ? std::move(repaired) : std::optional(std::move(bytes));
 	}
-	std::string bytes = readFile(path);
-	bytes.erase(0, bytes.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
-	m_names = readMtl(bytes, path, materials);
-	return streamOf(m_names);
-}
+
+	// Throws Error if the file must not be read, or is not what its name says.
+	Assimp::IOStream* streamOfFile(const std::string& path, const char* mode)
+	{
+		if (path == m_level_path)
+		{
+			if (!m_has_read) // opened once for its size, then for its text
+			{
+				m_text = levelText();
+				m_has_read = true;
+			}
+			return m_text ? streamOf(*m_text) : DefaultIOSystem::Open(path.c_str(), mode);
+		}
+		const bool is_obj = endingOf(m_level_path) == ".obj";
+		checkInside(m_level_path, is_obj ? "mtllib" : "reference", path, m_settings);
+		if (!is_obj)
+		{
+			return DefaultIOSystem::Open(path.c_str(), mode);
+		}
+		std::string bytes = readFile(path);
+		bytes.erase(0, bytes.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
+		m_names = readMtl(bytes, path, materials);
+		return streamOf(m_names);
+	}
+
+	std::string m_level_path;
+	LoadSettings m_settings;
+	bool m_has_read = false;           // the level's file
+	std::optional<std::string> m_text; // the level's text for Assimp; none: the file itself
+	std::string m_names;               // of the materials in the current MTL file
+};
 
 glm::dmat4 matrixOf(const aiMatrix4x4& m)
 {
@@ -191,11 +182,7 @@ public:
 							{"bad-polygons", m_faces.bad_polygons},
 							{"inverted-transparency", m_inverted},
 							{"not-applied", m_not_applied}};
-		for (const std::string_view id : kSentFindings)
-		{
-			m_to.value(tallies[id].count);
-			m_to.text(tallies[id].first);
-		}
+		sendTallies(tallies, m_to);
 		for (const std::vector<std::string>& list : {m_files.opened, m_files.missing})
 		{
 			m_to.value(uint64_t{list.size()});
@@ -249,23 +236,11 @@ private:
 			int two_sided = 0;
 			material.Get(AI_MATKEY_TWOSIDED, two_sided);
 			m_to.value(two_sided);
-			texture(material, aiTextureType_OPACITY);
-			texture(material, aiTextureType_DIFFUSE);
+			// Only OBJ has pictures of opacity, which readMtl() reads.
+			send({}, {}, glm::dmat3(1.0), {});
+			send(material.GetTexture(aiTextureType_DIFFUSE, 0, &text) == AI_SUCCESS ? textOf(text) : std::string(), {},
+				 glm::dmat3(1.0), {});
 		}
-	}
-
-	// Sends name and wrap modes.
-	void texture(const aiMaterial& material, aiTextureType type)
-	{
-		aiString path;
-		std::array<aiTextureMapMode, 2> wrap{aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
-		const bool found = material.GetTexture(type, 0, &path, nullptr, nullptr, nullptr, nullptr, wrap.data()) == AI_SUCCESS;
-		const auto wrapOf = [](aiTextureMapMode mode)
-		{
-			return mode == aiTextureMapMode_Mirror ? Wrap::mirror : mode == aiTextureMapMode_Clamp ? Wrap::clamp : Wrap::repeat;
-		};
-		send(found ? textOf(path) : std::string(), MaskUse{wrapOf(wrap[0]), wrapOf(wrap[1]), MaskChannel::alpha_or_first},
-			 glm::dmat3(1.0), {});
 	}
 
 	// Sends every node's meshes, parents first, children in order.
@@ -324,8 +299,8 @@ private:
 		}
 		if (const std::size_t exact = m_files.exact.size(); exact > 0 && exact != count && !m_is_obj)
 		{
-			throw Error(ExitCode::invalid_input, m_path + ": found " + std::to_string(exact) + " positions, of which " +
-													 std::to_string(count) + " belong to a surface, expected all of them");
+			refuseInput(m_path, std::to_string(exact) + " positions, of which " + std::to_string(count) + " belong to a surface",
+						"all of them");
 		}
 		return firsts;
 	}
@@ -348,12 +323,7 @@ private:
 			triangles += uint64_t{uses[i]} * m_scene.mMeshes[i]->mNumFaces;
 			vertices += uint64_t{uses[i]} * m_scene.mMeshes[i]->mNumVertices;
 		}
-		if (triangles > kMaxTriangles || vertices > 3 * uint64_t{kMaxTriangles})
-		{
-			throw Error(ExitCode::invalid_input,
-						m_path + ": found " + std::to_string(triangles) + " triangles of " + std::to_string(vertices) +
-							" vertices, counting every instance, expected at most " + std::to_string(kMaxTriangles));
-		}
+		checkCounts(m_path, triangles, vertices, ", counting every instance");
 	}
 
 	void send(const aiMesh& mesh, const std::string& name, const glm::dmat4& world)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Receives what load_assimp.cpp and fbx_source.cpp send from their worker.
-#include "core/error.h"
 #include "core/file.h"
 #include "core/image.h"
 #include "core/isolate.h"
+#include "core/words.h"
 #include "scene/load_parts.h"
 
 #include <algorithm>
@@ -109,8 +109,8 @@ private:
 			const Texture colour = texture();
 			if (!std::isfinite(made.material.alpha) || made.material.alpha < 0.0 || made.material.alpha > 1.0)
 			{
-				throw Error(ExitCode::invalid_input, m_path + ": material '" + made.material.name + "': found an opacity of " +
-														 std::to_string(made.material.alpha) + ", expected 0 to 1");
+				refuseInput(m_path + ": material '" + made.material.name + "'",
+							"an opacity of " + std::to_string(made.material.alpha), "0 to 1");
 			}
 			if (!opacity.name.empty())
 			{
@@ -255,15 +255,16 @@ void checkThere(const LoadSettings& settings, const LevelSource& source, const s
 {
 	for (const MaskSource& mask : source.masks)
 	{
+		if (mask.path.empty())
+		{
+			continue;
+		}
 		std::error_code failed;
-		if (!mask.path.empty() && !std::filesystem::is_regular_file(mask.path, failed))
+		if (!std::filesystem::is_regular_file(mask.path, failed))
 		{
-			throw Error(ExitCode::file, level_path + ": found no file " + mask.path + ", expected the mask of a material");
+			refuseInput(level_path, "no file " + mask.path, "the mask of a material", ExitCode::file);
 		}
-		if (!mask.path.empty())
-		{
-			checkInside(level_path, "mask '" + mask.name + "'", mask.path, settings);
-		}
+		checkInside(level_path, "mask '" + mask.name + "'", mask.path, settings);
 	}
 }
 

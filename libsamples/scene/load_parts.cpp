@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/load_parts.h"
 
-#include "core/error.h"
+#include "core/words.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <cctype>
 #include <filesystem>
 #include <limits>
 #include <unordered_map>
@@ -50,12 +48,18 @@ std::string besideLevel(const std::string& level_path, std::string name)
 	return std::filesystem::exists(sibling, failed) ? sibling.string() : given.string();
 }
 
+void checkCounts(const std::string& where, uint64_t triangles, uint64_t vertices, const std::string& counted)
+{
+	if (triangles > kMaxTriangles || vertices > 3 * uint64_t{kMaxTriangles})
+	{
+		refuseInput(where, std::to_string(triangles) + " triangles of " + std::to_string(vertices) + " vertices" + counted,
+					"at most " + std::to_string(kMaxTriangles));
+	}
+}
+
 std::string endingOf(const std::string& path)
 {
-	std::string ending = std::filesystem::path(path).extension().string();
-	std::transform(ending.begin(), ending.end(), ending.begin(),
-				   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-	return ending;
+	return lowered(std::filesystem::path(path).extension().string());
 }
 
 glm::dmat4 worldFromFile(const LoadSettings& settings)
@@ -190,6 +194,15 @@ void report(std::vector<Finding>& findings, std::string_view id, const Tally& ta
 	}
 }
 
+void sendTallies(SentTallies& tallies, ValueWriter& to)
+{
+	for (const std::string_view id : kSentFindings)
+	{
+		to.value(tallies[id].count);
+		to.text(tallies[id].first);
+	}
+}
+
 void addFindings(Diagnosis& diagnosis, const std::vector<Finding>& findings)
 {
 	for (const Finding& finding : findings)
@@ -227,9 +240,8 @@ void checkInside(const std::string& level_path, const std::string& reference, co
 	}
 	if (std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first != folder.end())
 	{
-		throw Error(ExitCode::invalid_input,
-					level_path + ": " + reference + ": found " + path +
-						", which is outside the level's folder, expected a file in it (allow-outside permits others)");
+		refuseInput(level_path + ": " + reference, path + ", which is outside the level's folder",
+					"a file in it (allow-outside permits others)");
 	}
 }
 

@@ -167,6 +167,7 @@ IsolationLimits levelLimits(std::size_t bytes);
 inline constexpr std::array<std::string_view, 7> kSentFindings{
 	"hidden-nodes", "lower-lods", "posed-meshes", "not-applied", "inverted-transparency", "points-or-lines", "bad-polygons"};
 using SentTallies = std::map<std::string_view, Tally>;
+void sendTallies(SentTallies& tallies, ValueWriter& to);
 
 // Precedes a mesh's arrays.
 struct MeshHead
@@ -174,6 +175,10 @@ struct MeshHead
 	uint32_t material = 0;
 	bool none = false; // there are no more meshes
 };
+
+// Throws Error (invalid_input) for more triangles, or three times as many vertices, than a level may have. `counted` says which
+// ones: ", counting every instance".
+void checkCounts(const std::string& where, uint64_t triangles, uint64_t vertices, const std::string& counted);
 
 // Extension in lower case: ".gltf".
 std::string endingOf(const std::string& path);
@@ -186,19 +191,6 @@ void finishMaterials(const LoadSettings& settings, LevelSource& source, Level& l
 // Drops the triangles with keep[i] = 0, vertices that no other triangle uses (their indices may be out of range), and meshes that
 // become empty. Preserves the order. `more`, one per vertex, is filtered like the vertices.
 void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std::vector<glm::vec2>* more = nullptr);
-
-// Joins several levels.
-
-// Appends the triangles, meshes, materials, masks, cameras and files of `from` to `to`, moved by `move` metres. Equal masks and
-// materials are shared. Cameras are renamed to be unique. Requires that the total numbers of vertices and triangles fit 32 bits.
-void appendLevel(Level& to, Level from, glm::dvec3 move);
-
-// Keeps a level from loadLevels() for other runs (core/kept_answers.h), so that the parts of a command read and clean it once.
-
-// Returns the result of `read`, possibly from another part of a command that found the same bytes in all files. Kept only if work
-// is divided into parts and no named file is missing.
-LoadedLevel keptLevel(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run,
-					  const std::function<LoadedLevel()>& read);
 
 // Loads texture coordinates of a level, for lightmaps.
 

@@ -4,7 +4,6 @@
 
 #include "core/value_stream.h"
 
-#include <cstddef>
 #include <cstdint>
 
 namespace nook

@@ -2,19 +2,14 @@
 #include "scene/mesh_text.h"
 
 #include "core/decimal.h"
-#include "core/error.h"
-#include "scene/load_parts.h"
 
-#include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <iterator>
 #include <limits>
 #include <sstream>
-#include <string_view>
 
 namespace nook
 {
@@ -41,12 +36,7 @@ std::string_view notFinite(std::string_view unsigned_word)
 
 std::size_t digitsAt(std::string_view word, std::size_t at)
 {
-	std::size_t count = 0;
-	while (at + count < word.size() && word[at + count] >= '0' && word[at + count] <= '9')
-	{
-		count += 1;
-	}
-	return count;
+	return std::min(word.find_first_not_of("0123456789", at), word.size()) - std::min(at, word.size());
 }
 
 } // namespace
@@ -99,19 +89,6 @@ double numberOf(std::string_view word)
 		value = small ? 0.0 : std::numeric_limits<double>::infinity();
 	}
 	return sign * value;
-}
-
-bool isWholeText(std::string_view word)
-{
-	const std::string_view digits = withoutSign(word);
-	return !digits.empty() && digitsAt(digits, 0) == digits.size();
-}
-
-std::string lowered(std::string_view word)
-{
-	std::string text(word);
-	std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-	return text;
 }
 
 std::string textFrom(const std::vector<std::string_view>& words, std::size_t first)
@@ -191,6 +168,13 @@ constexpr std::array<Type, 16> kTypes{{{"char", 1, true},
 									   {"float64", 8, false}}};
 constexpr std::array<std::string_view, 3> kFormats{"ascii", "binary_little_endian", "binary_big_endian"};
 
+// Digits with an optional sign.
+bool isWholeText(std::string_view word)
+{
+	const std::string_view digits = withoutSign(word);
+	return !digits.empty() && digitsAt(digits, 0) == digits.size();
+}
+
 class PlyReader
 {
 public:
@@ -222,7 +206,7 @@ public:
 			if (element.count > 0 && element.name == "tristrips")
 			{
 				// Assimp 5.2.5 silently makes one triangle of a strip.
-				throw Error(ExitCode::unsupported, m_path + ": found triangle strips, expected faces");
+				refuseInput(m_path, "triangle strips", "faces", ExitCode::unsupported);
 			}
 			const bool placed = element.name == "vertex" && std::count_if(element.properties.begin(), element.properties.end(),
 																		  [](const Property& p) { return p.axis >= 0; }) == 3;
@@ -230,9 +214,8 @@ public:
 			{
 				if (!skip(element))
 				{
-					throw Error(ExitCode::invalid_input, m_path + ": " + element.name + " " + std::to_string(i) +
-															 ": found the end of the file or no list, expected " +
-															 std::to_string(element.count) + " whole ones");
+					refuseInput(m_path + ": " + element.name + " " + std::to_string(i), "the end of the file or no list",
+								std::to_string(element.count) + " whole ones");
 				}
 				if (placed)
 				{
@@ -243,7 +226,7 @@ public:
 		}
 		if (faces == 0)
 		{
-			throw Error(ExitCode::invalid_input, m_path + ": found no triangle, expected a surface");
+			refuseInput(m_path, "no triangle", "a surface");
 		}
 	}
 
@@ -260,8 +243,7 @@ public:
 private:
 	[[noreturn]] void fail(const std::string& found, const std::string& expected) const
 	{
-		throw Error(ExitCode::invalid_input,
-					m_path + ": header, line " + std::to_string(m_line) + ": found " + found + ", expected " + expected);
+		refuseInput(m_path + ": header, line " + std::to_string(m_line), found, expected);
 	}
 
 	// Accepts any line end.
@@ -280,14 +262,12 @@ private:
 
 	const Type& typeOf(const std::string& type) const
 	{
-		for (const Type& known : kTypes)
+		const auto* const known = std::find_if(kTypes.begin(), kTypes.end(), [&](const Type& one) { return one.name == type; });
+		if (known == kTypes.end())
 		{
-			if (known.name == type)
-			{
-				return known;
-			}
+			fail("an unknown type of number", "char, uchar, short, ushort, int, uint, float or double");
 		}
-		fail("an unknown type of number", "char, uchar, short, ushort, int, uint, float or double");
+		return *known;
 	}
 
 	void takeFormat(const std::vector<std::string>& words)
@@ -362,12 +342,7 @@ private:
 			{
 				return false;
 			}
-			values = 0;
-			for (std::size_t i = 0; i < property.count_bytes; ++i)
-			{
-				const std::size_t at = m_at + (m_big_endian ? i : property.count_bytes - 1 - i);
-				values = (values << 8U) | static_cast<unsigned char>(m_bytes[at]);
-			}
+			values = bitsOf(property.count_bytes);
 			m_at += property.count_bytes;
 		}
 		if (values > (m_bytes.size() - m_at) / property.bytes) // negative lengths become very large here
@@ -382,15 +357,20 @@ private:
 		return true;
 	}
 
-	// The current number in a binary file.
-	double valueAt(const Property& property) const
+	// The current number in a binary file: its bits, and its value.
+	uint64_t bitsOf(std::size_t size) const
 	{
 		uint64_t bits = 0;
-		for (std::size_t i = 0; i < property.bytes; ++i)
+		for (std::size_t i = 0; i < size; ++i)
 		{
-			const std::size_t at = m_at + (m_big_endian ? i : property.bytes - 1 - i);
-			bits = (bits << 8U) | static_cast<unsigned char>(m_bytes[at]);
+			bits = (bits << 8U) | static_cast<unsigned char>(m_bytes[m_at + (m_big_endian ? i : size - 1 - i)]);
 		}
+		return bits;
+	}
+
+	double valueAt(const Property& property) const
+	{
+		const uint64_t bits = bitsOf(property.bytes);
 		if (!property.whole)
 		{
 			return property.bytes == 8 ? std::bit_cast<double>(bits)
@@ -488,12 +468,7 @@ constexpr std::size_t kHead = 84; // bytes before the first triangle
 // Size of a binary file with this head.
 uint64_t bytesNeeded(const std::string& bytes)
 {
-	uint64_t count = 0;
-	for (std::size_t i = 0; i < 4; ++i)
-	{
-		count |= uint64_t{static_cast<unsigned char>(bytes[80 + i])} << (8U * i);
-	}
-	return kHead + 50 * count;
+	return kHead + 50 * littleEndian(bytes, 80, 4);
 }
 
 class TextReader
@@ -588,9 +563,9 @@ std::optional<std::string> repairedStl(const std::string& bytes, const std::stri
 	if (has_head && bytes.find('\0') < kHead) // not text; and every count below 2^24 contains a zero
 	{
 		const uint64_t needed = bytesNeeded(bytes);
-		throw Error(ExitCode::invalid_input, path + ": header: found " + std::to_string((needed - kHead) / 50) + " triangles in " +
-												 std::to_string(bytes.size()) + " bytes, expected " + std::to_string(needed) +
-												 " bytes");
+		refuseInput(path + ": header",
+					std::to_string((needed - kHead) / 50) + " triangles in " + std::to_string(bytes.size()) + " bytes",
+					std::to_string(needed) + " bytes");
 	}
 	TextReader reader(solids);
 	std::optional<std::string> repaired =

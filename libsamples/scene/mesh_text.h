@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/error.h"
+#include "core/words.h"
 #include "scene/load.h"
 #include "scene/load_parts.h"
 
@@ -83,14 +84,8 @@ double numberOf(std::string_view word);
 // A 32-bit integer, optionally with a sign and leading zeros; none for anything else.
 std::optional<int> wholeOf(std::string_view word);
 
-// True for digits with an optional sign.
-bool isWholeText(std::string_view word);
-
 // A word for a message; long ones are truncated.
 std::string quoted(std::string_view word);
-
-// Lower case, for ASCII letters.
-std::string lowered(std::string_view word);
 
 // The line's text from the given word to the last.
 std::string textFrom(const std::vector<std::string_view>& words, std::size_t first);

@@ -3,11 +3,7 @@
 // beside it.
 #include "scene/mesh_text.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <string_view>
-#include <vector>
 
 namespace nook
 {

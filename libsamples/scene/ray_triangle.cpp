@@ -51,11 +51,16 @@ LargerTriangle enlarge(const Level& level, uint32_t triangle, double by_m)
 	return larger;
 }
 
+glm::dvec3 twiceAreaOf(const Level& level, std::size_t triangle)
+{
+	const glm::uvec3& corner = level.triangles[triangle];
+	const glm::dvec3 a = level.positions[corner.x];
+	return glm::cross(level.positions[corner.y] - a, level.positions[corner.z] - a);
+}
+
 glm::dvec3 geometricNormal(const Level& level, uint32_t triangle)
 {
-	const glm::uvec3 corner = level.triangles[triangle];
-	const glm::dvec3 a = level.positions[corner[0]];
-	return glm::normalize(glm::cross(level.positions[corner[1]] - a, level.positions[corner[2]] - a));
+	return glm::normalize(twiceAreaOf(level, triangle));
 }
 
 glm::dvec3 interpolatedNormal(const Level& level, uint32_t triangle, glm::dvec2 barycentric)

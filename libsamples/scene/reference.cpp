@@ -2,9 +2,9 @@
 #include "scene/reference.h"
 
 #include "core/decimal.h"
-#include "core/error.h"
 #include "core/random.h"
 #include "core/round.h"
+#include "core/words.h"
 #include "core/work_units.h"
 #include "pattern/methods.h"
 #include "scene/sample_set.h"
@@ -18,8 +18,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <functional>
-#include <vector>
+#include <numeric>
 
 namespace nook
 {
@@ -44,13 +43,53 @@ struct Scratch
 	{
 		return {x, y, z};
 	}
+	glm::vec3 operator[](std::size_t i) const
+	{
+		return {x[i], y[i], z[i]};
+	}
+	void put(std::size_t i, glm::vec3 p)
+	{
+		x[i] = p.x;
+		y[i] = p.y;
+		z[i] = p.z;
+	}
 };
+
+constexpr int kFirstBatch = 32; // with max_error; each later batch is as large as all previous ones together
+
+SampleDomain domainOf(ReferenceMeasure measure)
+{
+	switch (measure)
+	{
+	case ReferenceMeasure::obscurance:
+	case ReferenceMeasure::bent: return SampleDomain::hemisphere;
+	case ReferenceMeasure::sphere:
+	case ReferenceMeasure::hemisphere: return SampleDomain::ball;
+	case ReferenceMeasure::box: break;
+	}
+	return SampleDomain::box;
+}
 
 // Sample sets for one run, and the order in which a point uses them.
 class Batches
 {
 public:
-	explicit Batches(const ReferenceSettings& settings);
+	explicit Batches(const ReferenceSettings& settings)
+	{
+		assert(settings.rays >= 1 && settings.rays <= kMaxSamples && settings.radius_m > 0.0);
+		int spent = 0;
+		while (spent < settings.rays)
+		{
+			const int wanted = settings.max_error > 0.0 ? std::max(kFirstBatch, spent) : settings.rays;
+			const int size = std::min(wanted, settings.rays - spent);
+			if (m_sets.empty() || m_sets.back().count() != size)
+			{
+				m_sets.emplace_back(domainOf(settings.measure), size);
+			}
+			m_order.push_back(m_sets.size() - 1);
+			spent += size;
+		}
+	}
 
 	std::size_t count() const
 	{
@@ -68,14 +107,6 @@ private:
 
 // Fills scratch.values with the occlusion in [0, 1] of one placement of the set.
 using Fill = std::function<void(const SampleSet& set, Random& random, Scratch& scratch)>;
-
-constexpr int kFirstBatch = 32; // with max_error; each later batch is as large as all previous ones together
-
-Scratch& scratchOfThread()
-{
-	thread_local Scratch scratch;
-	return scratch;
-}
 
 // Two vectors that form a right-handed frame with the unit vector n (T. Duff et al., "Building an Orthonormal Basis, Revisited",
 // 2017).
@@ -96,12 +127,8 @@ void turnTo(glm::vec3 n, Scratch& scratch)
 	frameOf(n, t, b);
 	for (std::size_t i = 0; i < scratch.x.size(); ++i)
 	{
-		const float x = scratch.x[i];
-		const float y = scratch.y[i];
-		const float z = scratch.z[i];
-		scratch.x[i] = t.x * x + b.x * y + n.x * z;
-		scratch.y[i] = t.y * x + b.y * y + n.y * z;
-		scratch.z[i] = t.z * x + b.z * y + n.z * z;
+		const glm::vec3 p = scratch[i];
+		scratch.put(i, t * p.x + b * p.y + n * p.z);
 	}
 }
 
@@ -111,23 +138,8 @@ void foldOver(glm::vec3 n, Scratch& scratch)
 	for (std::size_t i = 0; i < scratch.x.size(); ++i)
 	{
 		const float below = std::min(0.0F, scratch.x[i] * n.x + scratch.y[i] * n.y + scratch.z[i] * n.z);
-		scratch.x[i] -= 2.0F * below * n.x;
-		scratch.y[i] -= 2.0F * below * n.y;
-		scratch.z[i] -= 2.0F * below * n.z;
+		scratch.put(i, scratch[i] - 2.0F * below * n);
 	}
-}
-
-SampleDomain domainOf(ReferenceMeasure measure)
-{
-	switch (measure)
-	{
-	case ReferenceMeasure::obscurance:
-	case ReferenceMeasure::bent: return SampleDomain::hemisphere;
-	case ReferenceMeasure::sphere:
-	case ReferenceMeasure::hemisphere: return SampleDomain::ball;
-	case ReferenceMeasure::box: break;
-	}
-	return SampleDomain::box;
 }
 
 // Sum of the directions, each times its open fraction.
@@ -136,7 +148,7 @@ glm::dvec3 openSum(const Scratch& scratch)
 	glm::dvec3 sum(0.0);
 	for (std::size_t i = 0; i < scratch.values.size(); ++i)
 	{
-		sum += static_cast<double>(1.0F - scratch.values[i]) * glm::dvec3(scratch.x[i], scratch.y[i], scratch.z[i]);
+		sum += static_cast<double>(1.0F - scratch.values[i]) * glm::dvec3(scratch[i]);
 	}
 	return sum;
 }
@@ -173,23 +185,6 @@ void fillObscurance(const Tracer& tracer, const ReferenceSettings& settings, glm
 				   [&](float distance_m) { return falloffAt(distance_m, settings, radius_m, u_m); });
 }
 
-Batches::Batches(const ReferenceSettings& settings)
-{
-	assert(settings.rays >= 1 && settings.rays <= kMaxSamples && settings.radius_m > 0.0);
-	int spent = 0;
-	while (spent < settings.rays)
-	{
-		const int wanted = settings.max_error > 0.0 ? std::max(kFirstBatch, spent) : settings.rays;
-		const int size = std::min(wanted, settings.rays - spent);
-		if (m_sets.empty() || m_sets.back().count() != size)
-		{
-			m_sets.emplace_back(domainOf(settings.measure), size);
-		}
-		m_order.push_back(m_sets.size() - 1);
-		spent += size;
-	}
-}
-
 // Normalises and rounds, so that no component exceeds 1.
 glm::vec3 unitOf(glm::dvec3 v)
 {
@@ -199,7 +194,7 @@ glm::vec3 unitOf(glm::dvec3 v)
 // The mean over batches; a batch of n samples has weight n^1.5, since the variance of a spiral's mean decreases about as n^−1.5.
 ReferenceValue estimate(const Batches& batches, const ReferenceSettings& settings, Random& random, const Fill& fill)
 {
-	Scratch& scratch = scratchOfThread();
+	thread_local Scratch scratch;
 	double weights = 0.0;
 	double occlusion = 0.0;
 	double squared_error = 0.0;
@@ -210,11 +205,7 @@ ReferenceValue estimate(const Batches& batches, const ReferenceSettings& setting
 		const SampleSet& set = batches[i];
 		scratch.resize(static_cast<std::size_t>(set.count()));
 		fill(set, random, scratch);
-		double sum = 0.0;
-		for (const float v : scratch.values)
-		{
-			sum += static_cast<double>(v);
-		}
+		const double sum = std::accumulate(scratch.values.begin(), scratch.values.end(), 0.0);
 		const double weight = set.count() * std::sqrt(static_cast<double>(set.count()));
 		weights += weight;
 		occlusion += weight * sum / set.count();
@@ -248,11 +239,8 @@ void placeVolume(const ReferenceSettings& settings, glm::vec3 normal, const glm:
 	const auto radius_m = static_cast<float>(settings.radius_m);
 	for (std::size_t i = 0; i < scratch.x.size(); ++i)
 	{
-		glm::vec3 p(scratch.x[i], scratch.y[i], scratch.z[i]);
-		p = radius_m * (settings.measure == ReferenceMeasure::box ? camera * p : p);
-		scratch.x[i] = p.x;
-		scratch.y[i] = p.y;
-		scratch.z[i] = p.z;
+		const glm::vec3 p = scratch[i];
+		scratch.put(i, radius_m * (settings.measure == ReferenceMeasure::box ? camera * p : p));
 	}
 }
 
@@ -291,48 +279,34 @@ constexpr std::size_t kTiles = 512;
 constexpr std::size_t kLeastTile_px = 8;
 
 // Pixels of a G-buffer as world-space points.
-class PixelPoints
+struct PixelPoints
 {
-public:
-	explicit PixelPoints(const GBuffer& gbuffer)
-		: m_gbuffer(gbuffer), m_projector(gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px),
-		  m_world_from_camera(glm::inverse(gbuffer.view.camera_from_world)), m_turn(m_world_from_camera)
+	explicit PixelPoints(const GBuffer& of)
+		: gbuffer(of), projector(of.view.projection, of.width_px, of.height_px),
+		  world_from_camera(glm::inverse(of.view.camera_from_world)), turn(world_from_camera)
 	{
-	}
-
-	// View space.
-	glm::dvec3 positionAt(int x, int y) const
-	{
-		return positionOf(m_gbuffer, m_projector, x, y);
-	}
-
-	// From view space to world space.
-	const glm::dmat3& turn() const
-	{
-		return m_turn;
 	}
 
 	ReferencePoint operator()(int x, int y) const
 	{
 		const std::size_t pixel =
-			static_cast<std::size_t>(y) * static_cast<std::size_t>(m_gbuffer.width_px) + static_cast<std::size_t>(x);
-		const ViewLine line = m_projector.lineOf({x + 0.5, y + 0.5});
-		const auto depth_m = static_cast<double>(m_gbuffer.depth[pixel]);
-		const glm::dvec3 normal(m_gbuffer.normals[pixel]);
+			static_cast<std::size_t>(y) * static_cast<std::size_t>(gbuffer.width_px) + static_cast<std::size_t>(x);
+		const ViewLine line = projector.lineOf({x + 0.5, y + 0.5});
+		const auto depth_m = static_cast<double>(gbuffer.depth[pixel]);
+		const glm::dvec3 normal(gbuffer.normals[pixel]);
 		// Errors off the surface come from the depth, at best a 32-bit number, and from the camera's matrices if the file had only
 		// 32 bits.
 		const double error_m =
-			m_gbuffer.depth_error_m.empty() ? depth_m * kUnitRoundoff : static_cast<double>(m_gbuffer.depth_error_m[pixel]);
-		const double lift_m = error_m * std::max(std::fabs(glm::dot(line.along, normal)), 1e-3) + m_gbuffer.view_error_m;
-		return {glm::dvec3(m_world_from_camera * glm::dvec4(line.at + depth_m * line.along, 1.0)), glm::normalize(m_turn * normal),
+			gbuffer.depth_error_m.empty() ? depth_m * kUnitRoundoff : static_cast<double>(gbuffer.depth_error_m[pixel]);
+		const double lift_m = error_m * std::max(std::fabs(glm::dot(line.along, normal)), 1e-3) + gbuffer.view_error_m;
+		return {glm::dvec3(world_from_camera * glm::dvec4(line.at + depth_m * line.along, 1.0)), glm::normalize(turn * normal),
 				lift_m};
 	}
 
-private:
-	const GBuffer& m_gbuffer;
-	Projector m_projector;
-	glm::dmat4 m_world_from_camera;
-	glm::dmat3 m_turn;
+	const GBuffer& gbuffer;
+	Projector projector;
+	glm::dmat4 world_from_camera;
+	glm::dmat3 turn; // from view space to world space
 };
 
 // The pixels of each tile that see a surface; about kTiles tiles.
@@ -388,9 +362,8 @@ void checkDepths(const GBuffer& gbuffer)
 		if (std::isfinite(depth_m) && !isLength(depth_m))
 		{
 			const auto width = static_cast<std::size_t>(gbuffer.width_px);
-			throw Error(ExitCode::invalid_input, "depth, pixel " + std::to_string(i % width) + "," + std::to_string(i / width) +
-													 ": found " + numberText(depth_m) + " m, expected lengths from " +
-													 numberText(kLeastLength_m) + " to " + numberText(kMostLength_m) + " m");
+			refuseInput("depth, pixel " + std::to_string(i % width) + "," + std::to_string(i / width), numberText(depth_m) + " m",
+						"lengths from " + numberText(kLeastLength_m) + " to " + numberText(kMostLength_m) + " m");
 		}
 	}
 }
@@ -466,16 +439,12 @@ std::optional<Vicinity> reachOf(const Level& level, const GBuffer& gbuffer, cons
 	const double error_m = errorOfRays(bounds);
 	Vicinity reach(bounds, 1.0001 * settings.radius_m + 16.0 * error_m);
 	const PixelPoints pixels(gbuffer);
-	for (int y = 0; y < gbuffer.height_px; ++y)
+	for (std::size_t pixel = 0; pixel < gbuffer.depth.size(); ++pixel)
 	{
-		for (int x = 0; x < gbuffer.width_px; ++x)
+		if (std::isfinite(gbuffer.depth[pixel]))
 		{
-			const std::size_t pixel =
-				static_cast<std::size_t>(y) * static_cast<std::size_t>(gbuffer.width_px) + static_cast<std::size_t>(x);
-			if (std::isfinite(gbuffer.depth[pixel]))
-			{
-				reach.add(originOf(pixels(x, y), settings, error_m));
-			}
+			const auto i = static_cast<int>(pixel);
+			reach.add(originOf(pixels(i % gbuffer.width_px, i / gbuffer.width_px), settings, error_m));
 		}
 	}
 	reach.count();
@@ -489,7 +458,6 @@ std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuff
 	const bool from_depth = !isByRays(settings.measure) && settings.source == MatterSource::depth;
 	assert(gbuffer.normals.size() == gbuffer.depth.size() && (from_depth || tracer != nullptr));
 	const PixelPoints pixels(gbuffer);
-	const glm::dmat3& turn = pixels.turn();
 	const Batches batches(settings);
 	const DepthMatter depth_matter = from_depth ? DepthMatter(gbuffer, run) : DepthMatter();
 
@@ -498,14 +466,14 @@ std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuff
 		Random random(settings.seed, pixel);
 		if (!from_depth)
 		{
-			ReferenceValue value = atPoint(*tracer, pixels(x, y), glm::mat3(turn), settings, batches, random);
+			ReferenceValue value = atPoint(*tracer, pixels(x, y), glm::mat3(pixels.turn), settings, batches, random);
 			if (settings.measure == ReferenceMeasure::bent)
 			{
-				value.bent = unitOf(glm::dvec3(value.bent) * turn); // multiplied by the transpose: to view space
+				value.bent = unitOf(glm::dvec3(value.bent) * pixels.turn); // multiplied by the transpose: to view space
 			}
 			return value;
 		}
-		const glm::dvec3 position = pixels.positionAt(x, y);
+		const glm::dvec3 position = positionOf(gbuffer, pixels.projector, x, y);
 		const Fill fill = [&](const SampleSet& set, Random& r, Scratch& scratch)
 		{
 			placeVolume(settings, gbuffer.normals[pixel], glm::mat3(1.0F), set, r, scratch);
@@ -529,12 +497,7 @@ bool isInMatter(const Tracer& tracer, glm::dvec3 position)
 	static const VoteDirections directions;
 	std::array<int8_t, kVotes> sides{};
 	tracer.sides(position, {directions.x, directions.y, directions.z}, sides);
-	int sum = 0;
-	for (const int8_t side : sides)
-	{
-		sum += side;
-	}
-	return sum < 0;
+	return std::accumulate(sides.begin(), sides.end(), 0) < 0;
 }
 
 void matterOfGeometry(const Tracer& tracer, glm::dvec3 origin, const Directions& offsets, std::span<float> matter)

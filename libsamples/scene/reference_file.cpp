@@ -2,8 +2,8 @@
 #include "scene/reference.h"
 
 #include "core/decimal.h"
-#include "core/error.h"
 #include "core/file.h"
+#include "core/words.h"
 #include "scene/level.h"
 #include "scene/load.h"
 
@@ -14,7 +14,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <optional>
 #include <string_view>
 
 namespace nook
@@ -67,6 +66,11 @@ std::string withoutBlanks(std::string_view text)
 	return kept;
 }
 
+std::string rowOf(const ReferenceValue& value)
+{
+	return numberText(value.visibility) + "," + numberText(value.standard_error) + "," + std::to_string(value.rays);
+}
+
 } // namespace
 
 std::optional<ReferencePoint> pointOf(glm::dvec3 position, glm::dvec3 normal)
@@ -104,15 +108,14 @@ std::vector<ReferencePoint> readPoints(const std::string& path)
 			n ? pointOf({(*n)[0], (*n)[1], (*n)[2]}, {(*n)[3], (*n)[4], (*n)[5]}) : std::nullopt;
 		if (!point)
 		{
-			throw Error(ExitCode::invalid_input, path + ":" + std::to_string(line) + ": found '" + std::string(row.substr(0, 80)) +
-													 "', expected six numbers " + std::string(kHeader) +
-													 ", positions to 1e15 m and a normal that is not 0");
+			refuseInput(path + ":" + std::to_string(line), "'" + std::string(row.substr(0, 80)) + "'",
+						"six numbers " + std::string(kHeader) + ", positions to 1e15 m and a normal that is not 0");
 		}
 		points.push_back(*point);
 	}
 	if (points.empty())
 	{
-		throw Error(ExitCode::invalid_input, path + ": found no point, expected rows " + std::string(kHeader));
+		refuseInput(path, "no point", "rows " + std::string(kHeader));
 	}
 	return points;
 }
@@ -123,8 +126,7 @@ std::string visibilityExr(int width_px, int height_px, std::span<const Reference
 	image.values.reserve(2 * values.size());
 	for (const ReferenceValue& value : values)
 	{
-		image.values.push_back(static_cast<float>(value.visibility));
-		image.values.push_back(static_cast<float>(value.standard_error));
+		image.values.insert(image.values.end(), {static_cast<float>(value.visibility), static_cast<float>(value.standard_error)});
 	}
 	return exrBytes(image);
 }
@@ -185,7 +187,7 @@ std::string bentCsv(std::span<const ReferenceValue> values)
 	std::string text = "visibility,standard_error,rays,bx,by,bz,cone_angle\n";
 	for (const ReferenceValue& value : values)
 	{
-		text += numberText(value.visibility) + "," + numberText(value.standard_error) + "," + std::to_string(value.rays);
+		text += rowOf(value);
 		for (int axis = 0; axis < 3; ++axis)
 		{
 			text += "," + numberText(static_cast<double>(value.bent[axis]));
@@ -227,7 +229,7 @@ std::string visibilityCsv(std::span<const ReferenceValue> values)
 	std::string text = "visibility,standard_error,rays\n";
 	for (const ReferenceValue& value : values)
 	{
-		text += numberText(value.visibility) + "," + numberText(value.standard_error) + "," + std::to_string(value.rays) + "\n";
+		text += rowOf(value) + "\n";
 	}
 	return text;
 }

@@ -2,10 +2,10 @@
 #include "scene/sample_set.h"
 
 #include "core/math.h"
-#include "core/random.h"
 #include "pattern/methods.h"
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
@@ -218,13 +218,8 @@ void SampleSet::placeInBall(Random& random, std::span<float> x, std::span<float>
 	const double u = random.uniform();
 	const SinCos a = sinCosOf(2.0 * kPi * random.uniform());
 	const SinCos b = sinCosOf(2.0 * kPi * random.uniform());
-	const double qx = std::sqrt(1.0 - u) * a.sin;
-	const double qy = std::sqrt(1.0 - u) * a.cos;
-	const double qz = std::sqrt(u) * b.sin;
-	const double qw = std::sqrt(u) * b.cos;
-	const glm::mat3 turn(glm::dmat3(1.0 - 2.0 * (qy * qy + qz * qz), 2.0 * (qx * qy + qz * qw), 2.0 * (qx * qz - qy * qw),
-									2.0 * (qx * qy - qz * qw), 1.0 - 2.0 * (qx * qx + qz * qz), 2.0 * (qy * qz + qx * qw),
-									2.0 * (qx * qz + qy * qw), 2.0 * (qy * qz - qx * qw), 1.0 - 2.0 * (qx * qx + qy * qy)));
+	const glm::dquat rotation(std::sqrt(u) * b.cos, std::sqrt(1.0 - u) * a.sin, std::sqrt(1.0 - u) * a.cos, std::sqrt(u) * b.sin);
+	const glm::mat3 turn(glm::mat3_cast(rotation));
 	for (std::size_t i = 0; i < static_cast<std::size_t>(m_count); ++i)
 	{
 		const float quantile = (static_cast<float>(i) + static_cast<float>(shift)) / static_cast<float>(m_count);

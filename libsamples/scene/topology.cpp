@@ -4,12 +4,10 @@
 #include "core/parallel.h"
 #include "core/random.h"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <utility>
 
 namespace nook
 {
@@ -72,13 +70,7 @@ Buckets bucketsOf(std::span<const uint64_t> hashes, int threads)
 	return buckets;
 }
 
-void count(EdgeCount& into, uint32_t triangle)
-{
-	into.count += 1;
-	into.first_triangle = std::min(into.first_triangle, triangle);
-}
-
-void merge(EdgeCount& into, const EdgeCount& other)
+void add(EdgeCount& into, const EdgeCount& other)
 {
 	into.count += other.count;
 	into.first_triangle = std::min(into.first_triangle, other.first_triangle);
@@ -90,14 +82,7 @@ std::vector<uint32_t> firstEqual(std::size_t count, int threads, const std::func
 								 const std::function<bool(std::size_t, std::size_t)>& equal)
 {
 	std::vector<uint64_t> hashes(count);
-	parallelFor(blocksOf(count), threads,
-				[&](std::size_t block)
-				{
-					for (std::size_t i = block * kParallelBlock; i < std::min(count, (block + 1) * kParallelBlock); ++i)
-					{
-						hashes[i] = mixBits(hash(i));
-					}
-				});
+	parallelForAll(count, threads, [&](std::size_t i) { hashes[i] = mixBits(hash(i)); });
 	const Buckets buckets = bucketsOf(hashes, threads);
 	std::vector<uint32_t> first(count);
 	parallelFor(kBuckets, threads,
@@ -184,11 +169,11 @@ EdgeFaults findEdgeFaults(const EdgeTable& edges, std::span<const uint32_t> part
 	{
 		if (sides.size() > 2)
 		{
-			count(faults.non_manifold, sides[0].triangle());
+			add(faults.non_manifold, {1, sides[0].triangle()});
 		}
 		else if (sides.size() == 2 && !isPair(sides))
 		{
-			count(faults.inconsistent, sides[0].triangle());
+			add(faults.inconsistent, {1, sides[0].triangle()});
 		}
 	};
 	parallelFor(blocks, threads,
@@ -201,8 +186,8 @@ EdgeFaults findEdgeFaults(const EdgeTable& edges, std::span<const uint32_t> part
 	EdgeFaults faults;
 	for (const EdgeFaults& part : found)
 	{
-		merge(faults.non_manifold, part.non_manifold);
-		merge(faults.inconsistent, part.inconsistent);
+		add(faults.non_manifold, part.non_manifold);
+		add(faults.inconsistent, part.inconsistent);
 	}
 	return faults;
 }

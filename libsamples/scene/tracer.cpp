@@ -24,8 +24,6 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <string>
-#include <vector>
 
 namespace nook
 {
@@ -145,9 +143,8 @@ RayHit Tracer::Data::refine(glm::dvec3 origin, glm::dvec3 direction, const RTCRa
 RayHit Tracer::nearest(glm::dvec3 origin, glm::dvec3 direction, double reach) const
 {
 	const double slack = 1e-5 * reach + 8.0 * m_data->error / glm::length(direction);
-	RTCRayHit ray{m_data->rayOf(origin, direction, reach + slack), {}};
-	ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-	ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+	RTCRayHit ray{};
+	withoutHit(ray) = m_data->rayOf(origin, direction, reach + slack);
 	tracing::Bundle bundle = bundleOf(origin, reach, static_cast<float>(reach - slack));
 	bundle.direction = direction;
 	rtcIntersect1(m_data->scene, &bundle.embrees, &ray);

@@ -2,21 +2,17 @@
 // Builds Embree's tree from a level's triangles and filters its hits. See tracer.cpp for how rounding is kept from deciding.
 #include "scene/tracer_tree.h"
 
-#include "core/error.h"
 #include "core/parallel.h"
 #include "core/round.h"
 #include "core/text.h"
+#include "core/words.h"
 #include "scene/ray_triangle.h"
-#include "scene/tracer.h"
-
-#include <glm/common.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
-#include <string>
 #include <string_view>
 
 namespace nook
@@ -257,21 +253,21 @@ RTCDevice newEmbreeDevice()
 		RTCDevice device = rtcNewDevice("");
 		if (device == nullptr)
 		{
-			throw Error(ExitCode::runtime, "Embree: found no device, expected a processor with SSE2");
+			refuseInput("Embree", "no device", "a processor with SSE2", ExitCode::runtime);
 		}
 		return device;
 	}
 	// Embree itself ignores unknown names.
 	constexpr std::array<std::string_view, 5> kSets{"sse2", "sse4.2", "avx", "avx2", "avx512"};
-	const std::string what = "NOOK_TEST_ISA: found '" + oneLine(isa) + "', expected ";
+	const std::string found = "'" + oneLine(isa) + "'";
 	if (std::find(kSets.begin(), kSets.end(), isa) == kSets.end())
 	{
-		throw Error(ExitCode::usage, what + "sse2, sse4.2, avx, avx2 or avx512");
+		refuseInput("NOOK_TEST_ISA", found, "sse2, sse4.2, avx, avx2 or avx512", ExitCode::usage);
 	}
 	RTCDevice device = rtcNewDevice((std::string("isa=") + isa).c_str());
 	if (device == nullptr)
 	{
-		throw Error(ExitCode::runtime, what + "instructions that Embree and this processor have");
+		refuseInput("NOOK_TEST_ISA", found, "instructions that Embree and this processor have", ExitCode::runtime);
 	}
 	return device;
 }

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Helpers of those who read files: lower case, numbers of bytes, lists for messages, errors.
+#pragma once
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace nook
+{
+
+// ASCII letters in lower case; others stay.
+inline char lowerCase(char c)
+{
+	return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+inline std::string lowered(std::string_view text)
+{
+	std::string lower(text);
+	std::transform(lower.begin(), lower.end(), lower.begin(), lowerCase);
+	return lower;
+}
+
+// An unsigned number of `size` bytes.
+inline uint64_t littleEndian(std::string_view bytes, std::size_t at, std::size_t size)
+{
+	uint64_t number = 0;
+	for (std::size_t i = 0; i < size; ++i)
+	{
+		number |= uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8U * i);
+	}
+	return number;
+}
+
+// The items with commas between them.
+template <class List> std::string commaList(const List& items)
+{
+	std::string text;
+	for (const auto& item : items)
+	{
+		text += (text.empty() ? "" : ", ") + std::string(item);
+	}
+	return text;
+}
+
+// Throws Error "where: found X, expected Y".
+[[noreturn]] inline void refuseInput(const std::string& where, const std::string& found, const std::string& expected,
+									 ExitCode code = ExitCode::invalid_input)
+{
+	throw Error(code, where + ": found " + found + ", expected " + expected);
+}
+
+} // namespace nook

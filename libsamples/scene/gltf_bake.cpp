@@ -1,0 +1,661 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Gives the meshes of a glTF file baked values: what each place of a mesh has in common, and where the target wants it.
+#include "scene/gltf_edit.h"
+
+#include "core/decimal.h"
+#include "core/error.h"
+#include "core/json_text.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <tuple>
+#include <utility>
+
+namespace nook
+{
+namespace
+{
+
+using Document = GltfEditor::Document;
+
+constexpr std::size_t kTries = 64; // sets of values that a primitive is compared with: with all, a forest would take forever
+
+// Values of a bake that become one attribute.
+struct Channel
+{
+	std::string name; // in the file; empty: the first free texture coordinates
+	const float* values = nullptr;
+	std::size_t size = 1; // numbers per vertex
+	bool is_back = false;
+	float unset = 1.0F;
+};
+
+// Values that primitives with the same positions share.
+struct ValueGroup
+{
+	std::vector<float> numbers; // of all channels for each vertex; NaN where no triangle uses it
+	bool two_sided = false;
+	std::size_t color = kNoNumber; // accessor of a COLOR_0 to multiply
+	std::vector<std::pair<std::string, std::size_t>> accessors;
+};
+
+// A mesh with separate values: at one node, or at all.
+struct MeshUnit
+{
+	std::size_t mesh = 0;
+	std::vector<std::size_t> nodes;
+	std::map<std::size_t, std::vector<const GltfPlace*>> primitives;
+	std::map<std::size_t, std::size_t> groups; // per primitive
+};
+
+bool isSamePlacement(const GltfPlace& a, const GltfPlace& b)
+{
+	return a.node == b.node && a.instance == b.instance;
+}
+
+std::string setName(int set)
+{
+	return "TEXCOORD_" + std::to_string(set);
+}
+
+int firstFreeSet(const Document& attributes)
+{
+	int set = 0;
+	while (attributes.contains(setName(set)))
+	{
+		set += 1;
+	}
+	return set;
+}
+
+// Takes values of other vertices, unless a vertex has different ones.
+bool merge(std::vector<float>& numbers, const std::vector<float>& other)
+{
+	const auto fits = [](float a, float b)
+	{
+		return std::isnan(a) || std::isnan(b) || a == b;
+	};
+	const bool all_fit = std::equal(numbers.begin(), numbers.end(), other.begin(), fits);
+	for (std::size_t i = 0; all_fit && i < numbers.size(); ++i)
+	{
+		numbers[i] = std::isnan(numbers[i]) ? other[i] : numbers[i];
+	}
+	return all_fit;
+}
+
+// `value` is 0 to 1 if the component type is an integer.
+void appendComponent(std::string& bytes, uint64_t component, float value)
+{
+	switch (component)
+	{
+	case 5126: appendRaw(bytes, value); break;
+	case 5123: appendRaw(bytes, static_cast<uint16_t>(value * 65535.0F + 0.5F)); break;
+	default: appendRaw(bytes, static_cast<uint8_t>(value * 255.0F + 0.5F));
+	}
+}
+
+class Baker
+{
+public:
+	Baker(GltfEditor& editor, const GltfBake& bake)
+		: m_editor(editor), m_bake(bake), m_in_color(bake.target == BakeTarget::color || bake.target == BakeTarget::color_alpha),
+		  m_colors(bake.color || m_in_color)
+	{
+		const float unset = !m_bake.visibility.empty() && m_bake.kind == BakedKind::visibility ? 1.0F : 0.0F;
+		m_attribute = m_bake.target == BakeTarget::visibility ? std::string(kBakedNames[static_cast<std::size_t>(m_bake.kind)])
+															  : m_bake.attribute;
+		const auto take = [&](const std::string& name, const auto& values, std::size_t size, bool back, float empty)
+		{
+			if (!values.empty())
+			{
+				m_channels.push_back({name, reinterpret_cast<const float*>(values.data()), size, back, empty});
+				m_width += size;
+			}
+		};
+		take(m_attribute, m_bake.visibility, 1, false, unset);
+		take(m_attribute + "_BACK", m_bake.back, 1, true, unset);
+		take("_BENT_NORMAL", m_bake.bent, 3, false, 0.0F);
+		take("_BENT_NORMAL_BACK", m_bake.bent_back, 3, true, 0.0F);
+		take("", m_bake.uvs, 2, false, 0.0F);
+		if (m_colors && m_editor.earlier.starts_with("color"))
+		{
+			m_editor.fail("COLOR_0", "an earlier bake in a file that was changed since", "the file before that bake");
+		}
+	}
+
+	void add(std::span<const GltfPlace> places, GltfBaked& made)
+	{
+		made.compression = m_editor.compression;
+		made.front.assign(m_bake.visibility.begin(), m_bake.visibility.end());
+		made.back.assign(m_bake.back.begin(), m_bake.back.end());
+		std::vector<MeshUnit> units = unitsOf(places);
+		for (const auto& [mesh, count] : m_placements)
+		{
+			made.shared_meshes += count > 1 ? 1U : 0U;
+		}
+		for (MeshUnit& unit : units)
+		{
+			for (const auto& [primitive, at] : unit.primitives)
+			{
+				if (m_width > 0)
+				{
+					unit.groups[primitive] = groupOf(primitiveOf(unit.mesh, primitive), meanOf(at));
+				}
+			}
+		}
+		for (ValueGroup& group : m_groups)
+		{
+			addValues(group);
+		}
+		addMeshes(units, made);
+		if (!m_bake.visibility.empty())
+		{
+			store(units, made);
+		}
+		if (m_bake.instances == BakeInstances::attribute)
+		{
+			addFactors(places, made);
+		}
+		if (!m_bake.png.empty())
+		{
+			addTexture(units);
+		}
+		made.bytes_added = m_editor.bytesAdded();
+		made.kept_alpha = m_kept_alpha.size();
+	}
+
+private:
+	Document& items(const char* name)
+	{
+		return m_editor.items(name);
+	}
+
+	Document& primitiveOf(std::size_t mesh, std::size_t primitive)
+	{
+		return items("meshes")[mesh]["primitives"][primitive];
+	}
+
+	Document materialOf(const Document& primitive)
+	{
+		const std::size_t index = numberIn(primitive, "material");
+		return index == kNoNumber ? Document::object() : items("materials")[index];
+	}
+
+	// Is the alpha of its colours coverage, which --to color-alpha leaves alone?
+	bool keepsAlpha(const Document& primitive)
+	{
+		return m_bake.target == BakeTarget::color_alpha && materialOf(primitive).value("alphaMode", "OPAQUE") != "OPAQUE";
+	}
+
+	std::vector<MeshUnit> unitsOf(std::span<const GltfPlace> places)
+	{
+		std::map<std::pair<std::size_t, std::size_t>, std::size_t> known;
+		std::vector<MeshUnit> units;
+		const GltfPlace* last = nullptr;
+		for (const GltfPlace& place : places)
+		{
+			const std::size_t mesh = items("nodes")[place.node]["mesh"].get<std::size_t>();
+			const std::size_t node = m_bake.instances == BakeInstances::separate ? place.node : 0;
+			const auto [at, is_new] = known.try_emplace({mesh, node}, units.size());
+			if (is_new)
+			{
+				units.emplace_back().mesh = mesh;
+			}
+			MeshUnit& unit = units[at->second];
+			unit.primitives[place.primitive].push_back(&place);
+			if (unit.nodes.empty() || unit.nodes.back() != place.node)
+			{
+				unit.nodes.push_back(place.node);
+			}
+			m_placements[mesh] += last == nullptr || !isSamePlacement(*last, place) ? 1U : 0U;
+			last = &place;
+		}
+		return units;
+	}
+
+	// The mean over the places of a primitive, for all channels.
+	std::vector<float> meanOf(const std::vector<const GltfPlace*>& places) const
+	{
+		std::vector<float> sums(places.front()->count * m_width, std::numeric_limits<float>::quiet_NaN());
+		std::vector<float> times(places.front()->count, 0.0F);
+		for (const GltfPlace* const place : places)
+		{
+			for (const auto& [vertex, of_level] : place->vertices)
+			{
+				float* to = &sums[vertex * m_width];
+				for (const Channel& channel : m_channels)
+				{
+					for (std::size_t i = 0; i < channel.size; ++i, ++to)
+					{
+						const float value = channel.values[of_level * channel.size + i];
+						*to = times[vertex] == 0.0F ? value : *to + value;
+					}
+				}
+				times[vertex] += 1.0F;
+			}
+		}
+		for (std::size_t i = 0; i < sums.size(); ++i)
+		{
+			sums[i] /= std::max(times[i / m_width], 1.0F);
+		}
+		return sums;
+	}
+
+	std::size_t groupOf(const Document& primitive, std::vector<float> numbers)
+	{
+		const Document& attributes = primitive["attributes"];
+		checkTarget(attributes);
+		const bool two_sided = materialOf(primitive).value("doubleSided", false);
+		const std::size_t color = m_colors ? numberIn(attributes, "COLOR_0") : kNoNumber;
+		std::vector<std::size_t>& known = m_groups_of[{numberIn(attributes, "POSITION"), color, two_sided}];
+		for (std::size_t i = known.size() - std::min(known.size(), kTries); i < known.size(); ++i)
+		{
+			if (merge(m_groups[known[i]].numbers, numbers))
+			{
+				return known[i];
+			}
+		}
+		known.push_back(m_groups.size());
+		m_groups.push_back({std::move(numbers), two_sided, color, {}});
+		return known.back();
+	}
+
+	// Throws unless the attribute is free or held a bake.
+	void checkTarget(const Document& attributes)
+	{
+		const std::size_t found = m_attribute.empty() ? kNoNumber : numberIn(attributes, m_attribute);
+		if (found == kNoNumber)
+		{
+			return;
+		}
+		if (m_bake.target == BakeTarget::texcoord && m_editor.earlier != textIn(m_bake.record, "to"))
+		{
+			m_editor.fail(m_attribute, "it in use",
+						  "a set that is free, as --to texcoord:" + std::to_string(firstFreeSet(attributes)));
+		}
+		const Document& accessor = items("accessors")[found];
+		if (m_bake.target != BakeTarget::texcoord && (accessor["type"] != "SCALAR" || accessor["componentType"] != 5126U))
+		{
+			m_editor.fail(m_attribute,
+						  "an accessor of " + textIn(accessor, "type") + ", component type " + accessor["componentType"].dump(),
+						  "SCALAR of 5126, as of an earlier bake, or none");
+		}
+	}
+
+	void addValues(ValueGroup& group)
+	{
+		const bool pairs = m_bake.target == BakeTarget::texcoord;
+		std::size_t at = 0;
+		for (const Channel& channel : m_channels)
+		{
+			const bool is_value = channel.size == 1 && (m_in_color || (pairs && channel.is_back)); // stored with another, or not
+			if (!is_value && (group.two_sided || !channel.is_back))
+			{
+				const std::size_t width = pairs && channel.size == 1 ? 2 : channel.size;
+				const bool has_back = width == 2 && group.two_sided && !m_bake.back.empty();
+				std::string bytes;
+				for (std::size_t v = at; v < group.numbers.size(); v += m_width)
+				{
+					const bool unset = std::isnan(group.numbers[v]);
+					for (std::size_t i = 0; i < width; ++i)
+					{
+						const std::size_t from = channel.size == 1 ? (has_back ? v + i : v) : v + i;
+						appendRaw(bytes, unset ? (channel.size == 3 && i == 1 ? 1.0F : channel.unset) : group.numbers[from]);
+					}
+				}
+				constexpr std::array<const char*, 4> kTypes{"", "SCALAR", "VEC2", "VEC3"};
+				group.accessors.emplace_back(channel.name,
+											 m_editor.addAccessor(kTypes[width], 5126, group.numbers.size() / m_width, bytes));
+			}
+			at += channel.size;
+		}
+		if (m_colors)
+		{
+			group.accessors.emplace_back("COLOR_0", addColor(group));
+		}
+	}
+
+	// A colour shows the mean of a vertex's sides.
+	float colorOf(const ValueGroup& group, std::size_t v) const
+	{
+		const float front = group.numbers[v * m_width];
+		const bool both = group.two_sided && !m_bake.back.empty();
+		return std::isnan(front) ? 1.0F : both ? 0.5F * (front + group.numbers[v * m_width + 1]) : front;
+	}
+
+	// An existing COLOR_0 times the values, in its own type, or grey in 8 bits.
+	std::size_t addColor(const ValueGroup& group)
+	{
+		const bool alpha = m_bake.target == BakeTarget::color_alpha;
+		std::optional<GltfValues> base;
+		uint64_t component = 5121;
+		std::size_t given = 0;
+		if (group.color != kNoNumber)
+		{
+			base.emplace(m_editor.file, group.color);
+			component = numberIn(items("accessors")[group.color], "componentType");
+			given = items("accessors")[group.color]["type"] == "VEC3" ? 3 : 4;
+		}
+		const std::size_t channels = given == 3 && !alpha ? 3 : 4;
+		const std::size_t count = group.numbers.size() / m_width;
+		std::string bytes;
+		for (std::size_t v = 0; v < count; ++v)
+		{
+			const float value = colorOf(group, v);
+			for (std::size_t i = 0; i < channels; ++i)
+			{
+				const float before = i < given ? static_cast<float>(base->number(v, i)) : 1.0F;
+				appendComponent(bytes, component, (i == 3) == alpha ? before * value : before);
+			}
+			padTo4(bytes);
+		}
+		const std::size_t made = m_editor.addAccessor(channels == 3 ? "VEC3" : "VEC4", component, count, bytes);
+		if (component != 5126)
+		{
+			items("accessors")[made]["normalized"] = true;
+		}
+		return made;
+	}
+
+	// Gives the primitives their accessors, in copies of meshes where a mesh has several sets of values.
+	void addMeshes(const std::vector<MeshUnit>& units, GltfBaked& made)
+	{
+		std::map<std::size_t, Document> originals;
+		for (const MeshUnit& unit : units)
+		{
+			originals.try_emplace(unit.mesh, items("meshes")[unit.mesh]);
+		}
+		std::map<std::pair<std::size_t, std::map<std::size_t, std::size_t>>, std::size_t> known;
+		std::set<std::size_t> used;
+		for (const MeshUnit& unit : units)
+		{
+			const auto [at, is_new] = known.try_emplace({unit.mesh, unit.groups}, unit.mesh);
+			if (is_new && !used.insert(unit.mesh).second)
+			{
+				at->second = items("meshes").size();
+				items("meshes").push_back(originals[unit.mesh]);
+				made.copies += 1;
+			}
+			for (const auto& [primitive, group] : unit.groups)
+			{
+				if (is_new)
+				{
+					setAttributes(primitiveOf(at->second, primitive), m_groups[group]);
+				}
+			}
+			for (const std::size_t node : unit.nodes)
+			{
+				items("nodes")[node]["mesh"] = at->second;
+			}
+		}
+	}
+
+	void setAttributes(Document& primitive, const ValueGroup& group)
+	{
+		Document& attributes = primitive["attributes"];
+		for (const auto& [name, accessor] : group.accessors)
+		{
+			if (name == "COLOR_0" && keepsAlpha(primitive))
+			{
+				m_kept_alpha.insert(numberIn(primitive, "material"));
+				continue;
+			}
+			if (name.empty())
+			{
+				const int set = firstFreeSet(attributes);
+				attributes[setName(set)] = accessor;
+				m_set_of_material[numberIn(primitive, "material")] = set;
+				continue;
+			}
+			// Sets have no gaps: free ones below get the same accessor.
+			for (int set = 0; m_bake.target == BakeTarget::texcoord && setName(set) != name; ++set)
+			{
+				if (!attributes.contains(setName(set)))
+				{
+					attributes[setName(set)] = accessor;
+				}
+			}
+			attributes[name] = accessor;
+		}
+	}
+
+	// Gives the level's vertices the values they have in the file.
+	void store(const std::vector<MeshUnit>& units, GltfBaked& made)
+	{
+		for (const MeshUnit& unit : units)
+		{
+			for (const auto& [primitive, places] : unit.primitives)
+			{
+				const ValueGroup& group = m_groups[unit.groups.at(primitive)];
+				const bool none = keepsAlpha(primitiveOf(unit.mesh, primitive));
+				for (const GltfPlace* const place : places)
+				{
+					for (const auto& [vertex, of_level] : place->vertices)
+					{
+						made.front[of_level] = none ? 1.0F : m_in_color ? colorOf(group, vertex) : group.numbers[vertex * m_width];
+						if (!made.back.empty())
+						{
+							made.back[of_level] = m_in_color ? made.front[of_level] : group.numbers[vertex * m_width + 1];
+						}
+					}
+				}
+			}
+		}
+	}
+
+	// For each placement of a mesh the factor of the mean with the least squared error.
+	void addFactors(std::span<const GltfPlace> places, GltfBaked& made)
+	{
+		std::map<std::size_t, std::vector<float>> of_node; // with instances
+		for (std::size_t first = 0; first < places.size();)
+		{
+			std::size_t end = first + 1;
+			while (end < places.size() && isSamePlacement(places[first], places[end]))
+			{
+				end += 1;
+			}
+			const GltfPlace& place = places[first];
+			Document& node = items("nodes")[place.node];
+			if (m_placements[numberIn(node, "mesh")] > 1)
+			{
+				const float factor = factorOf(places.subspan(first, end - first), made);
+				if (place.instance)
+				{
+					of_node[place.node].resize(*place.instance + 1, 1.0F);
+					of_node[place.node].back() = factor;
+				}
+				else if (node.value("extras", Document::object()).is_object())
+				{
+					node["extras"]["nook_visibility"] = factor;
+				}
+				else
+				{
+					m_editor.fail("nodes[" + std::to_string(place.node) + "].extras", "no object", "one, or nothing",
+								  ExitCode::unsupported);
+				}
+			}
+			first = end;
+		}
+		for (auto& [node, factors] : of_node)
+		{
+			Document& attributes = items("nodes")[node]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+			factors.resize(numberIn(items("accessors")[attributes.begin()->get<std::size_t>()], "count"), 1.0F);
+			const std::string bytes(reinterpret_cast<const char*>(factors.data()), factors.size() * sizeof(float));
+			attributes["_VISIBILITY"] = m_editor.addAccessor("SCALAR", 5126, factors.size(), bytes);
+		}
+	}
+
+	float factorOf(std::span<const GltfPlace> places, GltfBaked& made) const
+	{
+		std::vector<uint32_t> vertices; // of the level
+		for (const GltfPlace& place : places)
+		{
+			for (const auto& [vertex, of_level] : place.vertices)
+			{
+				vertices.push_back(of_level);
+			}
+		}
+		double products = 0.0;
+		double squares = 0.0;
+		for (const uint32_t v : vertices)
+		{
+			products += static_cast<double>(made.front[v]) * static_cast<double>(m_bake.visibility[v]);
+			squares += static_cast<double>(made.front[v]) * static_cast<double>(made.front[v]);
+		}
+		const auto factor = static_cast<float>(squares > 0.0 ? products / squares : 1.0);
+		for (const uint32_t v : vertices)
+		{
+			made.front[v] = std::min(1.0F, factor * made.front[v]);
+			if (!made.back.empty())
+			{
+				made.back[v] = std::min(1.0F, factor * made.back[v]);
+			}
+		}
+		return factor;
+	}
+
+	void addTexture(const std::vector<MeshUnit>& units)
+	{
+		const std::size_t texture = items("textures").size();
+		const std::size_t image = items("images").size(); // a missing list that items() adds moves the others
+		const std::size_t sampler = items("samplers").size();
+		const std::size_t view = m_editor.addView(Document::object(), m_bake.png);
+		items("textures").push_back({{"sampler", sampler}, {"source", image}});
+		items("samplers").push_back({{"magFilter", 9729U}, {"minFilter", 9987U}, {"wrapS", 33071U}, {"wrapT", 33071U}});
+		items("images").push_back({{"name", "visibility"}, {"mimeType", "image/png"}, {"bufferView", view}});
+		std::size_t made = kNoNumber; // for primitives without a material
+		std::set<std::size_t> done;
+		for (const MeshUnit& unit : units)
+		{
+			for (const auto& [number, places] : unit.primitives)
+			{
+				Document& primitive = primitiveOf(unit.mesh, number);
+				const std::size_t before = numberIn(primitive, "material");
+				if (before == kNoNumber && made == kNoNumber)
+				{
+					made = items("materials").size();
+					items("materials").push_back(Document::object());
+				}
+				const std::size_t material = before == kNoNumber ? made : before;
+				primitive["material"] = material;
+				if (done.insert(material).second)
+				{
+					const auto set = m_set_of_material.find(before);
+					Document& to = items("materials")[material]["occlusionTexture"];
+					Document use{{"index", texture},
+								 {"texCoord",
+								  set != m_set_of_material.end() ? static_cast<uint32_t>(set->second) : m_bake.uv_set.value_or(0)}};
+					if (to.contains("strength"))
+					{
+						use["strength"] = to["strength"];
+					}
+					to = std::move(use);
+				}
+			}
+		}
+	}
+
+	GltfEditor& m_editor;
+	const GltfBake& m_bake;
+	bool m_in_color;
+	bool m_colors;
+	std::vector<Channel> m_channels;
+	std::size_t m_width = 0;                         // numbers of all channels
+	std::string m_attribute;                         // of the values
+	std::map<std::size_t, std::size_t> m_placements; // per mesh
+	std::vector<ValueGroup> m_groups;
+	std::map<std::tuple<std::size_t, std::size_t, bool>, std::vector<std::size_t>> m_groups_of; // by positions, colours, sides
+	std::map<std::size_t, int> m_set_of_material; // texture coordinates that were added
+	std::set<std::size_t> m_kept_alpha;           // materials
+};
+
+} // namespace
+
+GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, const GltfBake& bake,
+				   std::span<const std::string> outputs)
+{
+	GltfBaked made;
+	std::vector<std::string> files;
+	const std::array<std::string, 1> same{"-"}; // the form of the input
+	for (const std::string& output : outputs.empty() ? std::span<const std::string>(same) : outputs)
+	{
+		made = {};
+		GltfEditor editor(file, output);
+		Baker(editor, bake).add(places, made);
+		if (!outputs.empty())
+		{
+			files.push_back(editor.take(output, bake.record));
+		}
+	}
+	made.files = std::move(files);
+	return made;
+}
+
+std::string levelGlb(const Level& level, std::string_view generator, const GlbBake& bake)
+{
+	assert(!level.triangles.empty() && (bake.visibility.empty() || bake.visibility.size() == level.positions.size()));
+	assert(bake.uvs.empty() == bake.png.empty() && (bake.uvs.empty() || bake.uvs.size() == level.positions.size()));
+	if (bake.visibility.empty() && bake.png.empty())
+	{
+		return levelGlb(level, generator);
+	}
+	GltfBake in;
+	static_cast<GlbBake&>(in) = bake;
+	std::vector<GltfPlace> places;
+	std::string bytes = levelGlb(level, generator, places);
+	const std::array<std::string, 1> output{"level.glb"};
+	return bakeInto(openGlb(std::move(bytes), level.name), places, in, output).files.front();
+}
+
+std::string placeValues(std::span<const GltfPlace> places, std::span<const float> front, std::span<const float> back,
+						const std::string& ending)
+{
+	const std::size_t sides = back.empty() ? 1 : 2;
+	const bool is_csv = ending == ".csv";
+	std::string rows = is_csv ? "node,instance,primitive,vertex,visibility" + std::string(sides == 2 ? ",back\n" : "\n") : "";
+	Document parts = Document::array();
+	for (const GltfPlace& place : places)
+	{
+		std::vector<float> values(place.count * sides, 1.0F);
+		for (const auto& [vertex, of_level] : place.vertices)
+		{
+			values[vertex * sides] = front[of_level];
+			values[vertex * sides + sides - 1] = sides == 2 ? back[of_level] : front[of_level];
+		}
+		const std::string instance = place.instance ? std::to_string(*place.instance) : "";
+		const std::string head = std::to_string(place.node) + "," + instance + "," + std::to_string(place.primitive) + ",";
+		for (std::size_t v = 0; is_csv && v < place.count; ++v)
+		{
+			rows += head + std::to_string(v) + "," + shortestDecimal(values[v * sides]) +
+					(sides == 2 ? "," + shortestDecimal(values[v * sides + 1]) : "") + "\n";
+		}
+		if (ending == ".npy")
+		{
+			rows.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+		}
+		parts.push_back({{"node", place.node},
+						 {"instance", place.instance ? Document(*place.instance) : Document()},
+						 {"primitive", place.primitive},
+						 {"values", std::move(values)}});
+	}
+	if (ending == ".json")
+	{
+		return jsonLine(Document{{"schema", "nook/vertices/1"}, {"sides", sides}, {"parts", std::move(parts)}}) + "\n";
+	}
+	if (is_csv)
+	{
+		return rows;
+	}
+	const std::string count = std::to_string(rows.size() / sizeof(float) / sides);
+	std::string head = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + count + (sides == 1 ? ",), }" : ", 2), }");
+	head.resize((head.size() + 11 + 63) / 64 * 64 - 11, ' '); // numpy.lib.format, version 1.0: the values begin at a multiple of 64
+	std::string bytes("\x93NUMPY\x01\x00", 8);
+	appendRaw(bytes, static_cast<uint16_t>(head.size() + 1));
+	return bytes + head + "\n" + rows;
+}
+
+} // namespace nook

@@ -118,24 +118,19 @@ void declare(CLI::App& app, BakeOptions& options)
 	addLevelOptions(app, options.level);
 	addOptions(
 		app,
-		{{"--radius",
-		  takesNumber(settings.radius_m, 1e-6, std::numeric_limits<double>::infinity()),
-		  "Metres that a ray reaches, to 1e9; inf: without end",
-		  {.required = true}},
+		{{"--radius", takesNumber(settings.radius_m, 1e-6, std::numeric_limits<double>::infinity()),
+		  "Metres that a ray reaches, to 1e9; inf: without end", kRequired},
 		 {"--falloff", takesChoice(kBakeFalloffs, settings.falloff),
 		  "Weight of a surface at distance t: hard 1 (default), linear 1 - t/radius, alchemy u t / max(u, t)^2"},
-		 {"--falloff-u",
-		  takesNumber(options.falloff_u_m, 1e-9, 1e9),
-		  "u of --falloff alchemy, metres (default: a tenth of the radius)",
-		  {.needs = {{"--falloff alchemy", "both or none"}}}},
+		 {"--falloff-u", takesNumber(options.falloff_u_m, 1e-9, 1e9),
+		  "u of --falloff alchemy, metres (default: a tenth of the radius)", needs("--falloff alchemy", "both or none")},
 		 {"--rays", takesWhole(settings.rays, 1, kMaxSamples), "Rays a vertex, a texel or a probe (default 256)"},
 		 {"--fit", takesChoice(kBakeFits, settings.fit),
 		  "surface: values whose interpolation is nearest to rays all over the triangles (default); points: those at the vertices",
 		  ofVertices()},
-		 {"--normals",
-		  takesChoice(kBakeNormals, settings.normals),
+		 {"--normals", takesChoice(kBakeNormals, settings.normals),
 		  "Rays lie around the triangles' own normals (default) or around those of the vertices, interpolated",
-		  {.excludes = {{"--probes", "none, since probes have all normals"}}}},
+		  excludes("--probes", "none, since probes have all normals")},
 		 {"--max-error", takesNumber(settings.max_error, 1e-3, 1.0),
 		  "Splits triangles whose root mean square error is above that, and neighbours, so that no crack opens",
 		  ofVertices({{"--fit points", "--fit surface, whose error it is"}})},
@@ -163,14 +158,13 @@ void declare(CLI::App& app, BakeOptions& options)
 		  {.needs = {volumes}}},
 		 directionsRow(options.directions,
 					   {.needs = {volumes, {"--volumes-by " + maskMethod(), maskMethod(), "with another method"}}}),
-		 {"--texture",
-		  takesWhole(options.texture_px, kLeastTexture_px, kMostTexture_px),
+		 {"--texture", takesWhole(options.texture_px, kLeastTexture_px, kMostTexture_px),
 		  "Texels across of an occlusion texture, in place of values at vertices; by the level's second texture coordinates or by "
 		  "the first",
-		  {.excludes = {{"--probes"}}}},
+		  excludes("--probes")},
 		 {"--probes", takesNumber(options.probes_m, 1e-6, 1e9),
-		  "Metres between the probes of a grid, for what moves, in place of vertices: a texture (.ktx2) and its reader (.glsl)"}});
-	addSeed(app, settings.seed);
+		  "Metres between the probes of a grid, for what moves, in place of vertices: a texture (.ktx2) and its reader (.glsl)"},
+		 seedRow(settings.seed)});
 	addOutputs(app, options.outputs, kAllBakeFormats);
 	addRun(app, options.outputs, true);
 }
@@ -660,11 +654,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 	{
 		files.add(options.outputs.files[i], made.bytes[i]);
 	}
-	addSide(files, options.outputs, facts.json(), read);
-	if (options.outputs.json.empty() && isStdoutFree(options.outputs))
-	{
-		files.add("-", facts.lines());
-	}
+	addSide(files, options.outputs, facts.json(), read, options.outputs.json.empty() ? facts.lines() : "");
 	files.commit();
 	for (const std::string& warning : made.warnings)
 	{

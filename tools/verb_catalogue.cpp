@@ -103,21 +103,15 @@ void run(CatalogueOptions& options, VerbProgress& progress)
 	}
 	const std::vector<std::string> different = options.check ? differences(options, files) : std::vector<std::string>{};
 
+	Facts facts = verbFacts("catalogue");
+	facts.whole("files", files.size());
+	facts.texts("different", different);
 	OutputSet outputs;
-	if (!options.check)
+	for (const CatalogueFile& file : options.check ? std::vector<CatalogueFile>{} : files)
 	{
-		for (const CatalogueFile& file : files)
-		{
-			outputs.add(pathOf(options, file.path), file.bytes);
-		}
+		outputs.add(pathOf(options, file.path), file.bytes);
 	}
-	if (!options.outputs.json.empty())
-	{
-		Facts facts = verbFacts("catalogue");
-		facts.whole("files", files.size());
-		facts.texts("different", different);
-		outputs.add(options.outputs.json, facts.json());
-	}
+	addSide(outputs, options.outputs, facts.json(), {});
 	outputs.commit();
 	if (!different.empty())
 	{
@@ -130,22 +124,17 @@ void run(CatalogueOptions& options, VerbProgress& progress)
 void declare(CLI::App& app, CatalogueOptions& options)
 {
 	const OptionRule domain{"--domain", "--domain as well", "without --domain, which makes the whole catalogue"};
-	addOptions(app, {{"--domain", takesChoice(patternDomains(), options.domain), "One domain (default: all, with tiles)"},
-					 {"--counts",
-					  [&options](CLI::App& verb, const std::string& name, const std::string& help)
-					  { return addCounts(verb, name, options.counts, kMaxCatalogueCount, help); },
-					  "Numbers of samples (default 1-64)",
-					  {.needs = {domain}}},
-					 {"--tiles",
-					  takesFlag(options.tiles),
-					  "Disk: also the 4 x 4 tiles of the free patterns with 4 to 16 lines",
-					  {.needs = {domain, {"--domain disk", "--domain disk", "with another domain"}}}},
-					 {"--check", takesFlag(options.check),
-					  "Writes nothing; exit code 7 when a file there differs from what would be written"},
-					 {"-o,--output",
-					  takesText(options.folder, "FOLDER"),
-					  "The catalogue's folder; DOMAIN/DOMAIN_NNN.json are made in it",
-					  {.required = true}}});
+	addOptions(
+		app,
+		{{"--domain", takesChoice(patternDomains(), options.domain), "One domain (default: all, with tiles)"},
+		 {"--counts", takesCounts(options.counts, kMaxCatalogueCount), "Numbers of samples (default 1-64)", {.needs = {domain}}},
+		 {"--tiles",
+		  takesFlag(options.tiles),
+		  "Disk: also the 4 x 4 tiles of the free patterns with 4 to 16 lines",
+		  {.needs = {domain, {"--domain disk", "--domain disk", "with another domain"}}}},
+		 {"--check", takesFlag(options.check), "Writes nothing; exit code 7 when a file there differs from what would be written"},
+		 {"-o,--output", takesText(options.folder, "FOLDER"), "The catalogue's folder; DOMAIN/DOMAIN_NNN.json are made in it",
+		  kRequired}});
 	addJson(app, options.outputs.json);
 	addRun(app, options.outputs, true);
 }

@@ -4,7 +4,6 @@
 #include "scene_options.h"
 
 #include "core/decimal.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "core/work_units.h"
@@ -14,7 +13,6 @@
 #include "study/fit.h"
 #include "version.h"
 
-#include <algorithm>
 #include <array>
 
 namespace nook
@@ -162,22 +160,13 @@ void run(FitOptions& options, VerbProgress& progress)
 	{
 		return;
 	}
-	OutputSet files;
 	const std::string json = fitJson(report, fitCommand(options), NOOK_VERSION);
-	for (const std::string& path : options.outputs.files)
-	{
-		files.add(path, json);
-	}
 	if (!options.start.empty())
 	{
 		read.push_back(options.start);
 	}
-	addSide(files, options.outputs, json, read);
-	if (isStdoutFree(options.outputs))
-	{
-		files.add("-", linesOf(report));
-	}
-	files.commit();
+	writeOutputs(
+		options.outputs, [&](const std::string&) { return json; }, json, read, linesOf(report));
 }
 
 } // namespace

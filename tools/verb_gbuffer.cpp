@@ -11,7 +11,6 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
-#include <span>
 
 namespace nook
 {
@@ -37,10 +36,8 @@ struct GBufferOptions
 
 void declare(CLI::App& app, GBufferOptions& options)
 {
-	addOptions(app, {{"LEVEL",
-					  takesText(options.level.level, "LEVEL"),
-					  "A level (.gltf .glb .obj .fbx .ply .stl), builtin:NAME, or a G-buffer of an engine (.exr)",
-					  {.required = true}}});
+	addOptions(app, {{"LEVEL", takesText(options.level.level, "LEVEL"),
+					  "A level (.gltf .glb .obj .fbx .ply .stl), builtin:NAME, or a G-buffer of an engine (.exr)", kRequired}});
 	addLoadOptions(app, options.level.load);
 	addCameraOptions(app, options.camera);
 	addGBufferChannels(app, options.import);
@@ -111,18 +108,14 @@ void convert(const GBufferOptions& options, VerbProgress& progress)
 	progress.start("gbuffer", options.outputs.threads, options.outputs.progress);
 	const GBuffer gbuffer = readGBuffer(options.level.level, import);
 	const std::string name = std::filesystem::path(options.level.level).filename().string();
-	OutputSet files;
-	for (const std::string& path : options.outputs.files)
-	{
-		files.add(path, gbufferBytes(gbuffer, notesOf(name, "given", import.normals_from_depth ? "from-depth" : "given")));
-	}
+	const Notes notes = notesOf(name, "given", import.normals_from_depth ? "from-depth" : "given");
 	Facts facts = verbFacts("gbuffer");
 	facts.text("gbuffer", name);
 	PictureFacts picture;
 	picture.add(gbuffer);
 	picture.addTo(facts);
-	addSide(files, options.outputs, facts.json(), {options.level.level});
-	files.commit();
+	writeOutputs(options.outputs, [&](const std::string&) { return gbufferBytes(gbuffer, notes); }, facts.json(),
+				 {options.level.level});
 }
 
 void cast(const GBufferOptions& options, VerbProgress& progress)

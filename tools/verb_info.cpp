@@ -18,7 +18,6 @@
 #include "volume/volume_glb.h"
 
 #include <array>
-#include <filesystem>
 
 namespace nook
 {
@@ -318,9 +317,7 @@ void run(InfoOptions& options, VerbProgress& progress)
 	{
 		describePlain(options, settings, facts);
 	}
-	OutputSet files;
-	addSummary(files, options.outputs, facts.json(), facts.lines());
-	files.commit();
+	writeOutputs(options.outputs, {}, facts.json(), {}, facts.lines());
 }
 
 void declare(CLI::App& app, InfoOptions& options)

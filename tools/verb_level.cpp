@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <filesystem>
 
 namespace nook
@@ -80,24 +79,15 @@ constexpr unsigned kMostCells = 4096;
 glm::uvec3 gridOfText(const std::string& name, const std::string& text)
 {
 	std::vector<unsigned> counts;
-	const char* at = text.data();
-	const char* const end = at + text.size();
-	bool good = true;
-	while (good && counts.size() < 3)
+	for (const std::string& part : partsOf(text, 'x'))
 	{
-		const std::from_chars_result result = std::from_chars(at, end, counts.emplace_back());
-		good = result.ec == std::errc{} && counts.back() >= 1 && counts.back() <= kMostCells;
-		at = result.ptr;
-		if (at == end)
-		{
-			break;
-		}
-		good = good && *at++ == 'x';
+		counts.push_back(std::min(numberFrom<unsigned>(part).value_or(0), kMostCells + 1));
 	}
 	const glm::uvec3 grid = counts.size() == 2   ? glm::uvec3(counts[0], 1, counts[1])
 							: counts.size() == 3 ? glm::uvec3(counts[0], counts[1], counts[2])
 												 : glm::uvec3(0);
-	if (!good || at != end || grid.x == 0 || uint64_t{grid.x} * grid.y * grid.z > kMostCells)
+	const uint64_t cells = uint64_t{grid.x} * grid.y * grid.z;
+	if (cells < 1 || cells > kMostCells)
 	{
 		refuseValue(name, text, "XxZ or XxYxZ, at most 4096 cells: 4x3 or 4x2x3");
 	}
@@ -277,36 +267,21 @@ void declare(CLI::App& app, ConvertOptions& options)
 		}
 		options.levels.push_back(text);
 	};
-	const auto take_move = [&options](const std::string& name, const std::string& text)
-	{
-		options.moves.push_back(positionOf(name, text));
-	};
-	const auto take_box = [&cells](const std::string& name, const std::string& text)
-	{
-		cells.box = boxOf(name, text);
-	};
-	const auto take_grid = [&cells](const std::string& name, const std::string& text)
-	{
-		cells.grid = gridOfText(name, text);
-	};
-	addOptions(app, {{"LEVEL",
-					  takesEach("LEVEL", take_level),
-					  "Levels (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME, which become one",
-					  {.required = true}}});
+	addOptions(app, {{"LEVEL", takesEach("LEVEL", take_level),
+					  "Levels (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME, which become one", kRequired}});
 	addLoadOptions(app, options.load);
 	addOptions(
 		app,
-		{{"--move", takesEach("X,Y,Z", take_move), "Moves a level by so many metres; as often as there are levels, in their order"},
-		 {"--cell", takesParsed("X,Y,Z,X,Y,Z", take_box),
+		{{"--move", takesEach("X,Y,Z", options.moves, positionOf),
+		  "Moves a level by so many metres; as often as there are levels, in their order"},
+		 {"--cell", takesParsed("X,Y,Z,X,Y,Z", cells.box, boxOf),
 		  "The part of the level in a box, metres: triangles by their centre, and their surroundings, marked as such"},
-		 {"--cells",
-		  takesParsed("XxZ", take_grid),
+		 {"--cells", takesParsed("XxZ", cells.grid, gridOfText),
 		  "All of the level as such cells of one size, so many along x and z, or x, y and z: a file each, NAME-0-0.glb and so on",
-		  {.excludes = {{"--cell"}}}},
-		 {"--around",
-		  takesNumber(cells.around_m, 0.0, 1e9),
+		  excludes("--cell")},
+		 {"--around", takesNumber(cells.around_m, 0.0, 1e9),
 		  "Metres that a cell's surroundings reach: what rays or volumes reach in it at least",
-		  {.needs = {{"--cell or --cells", "one of them"}}}},
+		  needs("--cell or --cells", "one of them")},
 		 {"--cameras", takesWhole(options.cameras, 1, 64, "K"),
 		  "Adds the K most informative views, as --camera auto:K of other verbs"}});
 	addOutputs(app, options.outputs, kLevelFormats);

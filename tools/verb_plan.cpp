@@ -133,11 +133,7 @@ struct ParsedCommand
 	std::optional<double> number(const std::string& option) const
 	{
 		const std::vector<std::string> found = values(option);
-		double value = 0.0;
-		return !found.empty() &&
-					   readDecimal(found.front().data(), found.front().data() + found.front().size(), value).ec == std::errc{}
-				   ? std::optional(value)
-				   : std::nullopt;
+		return found.empty() ? std::nullopt : numberFrom<double>(found.front());
 	}
 };
 
@@ -215,11 +211,7 @@ double trianglesOf(const std::string& folder, const std::string& level)
 	{
 		return trianglesOfFile(nativePath(level).extension().string(), bytesOf(folder, level));
 	}
-	const std::size_t colon = level.rfind(':');
-	double triangles = 0.0;
-	const char* const end = level.data() + level.size();
-	const bool sized = readDecimal(level.data() + colon + 1, end, triangles).ec == std::errc{};
-	return sized ? triangles : 10000.0; // as many as the largest has
+	return numberFrom<double>(level.substr(level.rfind(':') + 1)).value_or(10000.0); // as many as the largest has
 }
 
 constexpr double kVerticesPerTriangle = 0.75; // with values of their own, as in Sponza
@@ -246,14 +238,8 @@ WorkFacts factsOf(const ParsedCommand& parsed, const std::string& folder, const 
 	}
 	for (const std::string& size : parsed.values("--size"))
 	{
-		const std::size_t x = size.find('x');
-		double width = 0.0;
-		double height = 0.0;
-		if (x != std::string::npos && readDecimal(size.data(), size.data() + x, width).ec == std::errc{} &&
-			readDecimal(size.data() + x + 1, size.data() + size.size(), height).ec == std::errc{})
-		{
-			facts.pixels = width * height;
-		}
+		const glm::ivec2 pixels_of = sizeOf("--size", size);
+		facts.pixels = static_cast<double>(pixels_of.x) * pixels_of.y;
 	}
 	facts.rays = parsed.number("--rays").value_or(256.0);
 	const auto given = [&parsed](std::initializer_list<const char*> options)
@@ -471,13 +457,6 @@ void addPlanFacts(Facts& summary, const Plan& plan)
 	summary.items("groups", groups);
 }
 
-void tell(const Outputs& outputs, const Facts& summary, const std::string& text)
-{
-	OutputSet files;
-	addSummary(files, outputs, summary.json(), text);
-	files.commit();
-}
-
 void writePlan(const Plan& plan, const std::string& folder)
 {
 	const fs::path file = nativePath(folder) / kPlanFile;
@@ -526,7 +505,7 @@ void tellStatus(const PlanOptions& options)
 		}
 	}
 	summary.texts("left", names);
-	tell(options.outputs, summary, text);
+	writeOutputs(options.outputs, {}, summary.json(), {}, text);
 }
 
 void checkForm(const PlanOptions& options)
@@ -579,7 +558,7 @@ void run(PlanOptions& options, VerbProgress&)
 		summary.text("start", engine->start);
 		text += folder + ": " + std::string(engine->start) + "\n";
 	}
-	tell(options.outputs, summary, text);
+	writeOutputs(options.outputs, {}, summary.json(), {}, text);
 }
 
 void declare(CLI::App& app, PlanOptions& options)

@@ -51,21 +51,16 @@ void declare(CLI::App& app, ReferenceOptions& options)
 		{{"--gbuffer", takesText(options.gbuffer, "FILE.exr"), "The pixels to work on"},
 		 {"--points", takesText(options.points, "FILE.csv"),
 		  "The points to work on, one a line: x,y,z,nx,ny,nz (position in metres and normal, world space)"},
-		 {"--radius",
-		  takesNumber(settings.radius_m, 1e-6, std::numeric_limits<double>::infinity()),
-		  "Metres that a ray reaches, or radius of the volume (box: half its side), to 1e9; inf: without end",
-		  {.required = true}},
+		 {"--radius", takesNumber(settings.radius_m, 1e-6, std::numeric_limits<double>::infinity()),
+		  "Metres that a ray reaches, or radius of the volume (box: half its side), to 1e9; inf: without end", kRequired},
 		 {"--measure", takesChoice(kMeasures, settings.measure),
 		  "Obscurance by rays over the hemisphere (default), or the open share of a volume around the point: the sphere, its half "
 		  "above the surface, the box along the camera's axes; bent: obscurance, and the mean direction of what is open"},
-		 {"--falloff",
-		  takesChoice(kFalloffs, settings.falloff),
+		 {"--falloff", takesChoice(kFalloffs, settings.falloff),
 		  "Weight of a surface at distance t: hard 1 (default), linear 1 - t/radius, alchemy u t / max(u, t)^2",
-		  {.excludes = {{volumes, "--measure obscurance or bent", "with the open share of a volume"}}}},
-		 {"--falloff-u",
-		  takesNumber(options.falloff_u_m, 1e-9, 1e9),
-		  "u of --falloff alchemy, metres (default: a tenth of the radius)",
-		  {.needs = {{"--falloff alchemy", "both or none"}}}},
+		  excludes(volumes, "--measure obscurance or bent", "with the open share of a volume")},
+		 {"--falloff-u", takesNumber(options.falloff_u_m, 1e-9, 1e9),
+		  "u of --falloff alchemy, metres (default: a tenth of the radius)", needs("--falloff alchemy", "both or none")},
 		 {"--from",
 		  takesChoice(kSources, settings.source),
 		  "What the volume holds: the level's solids (default), or whatever is behind the depth buffer, which needs no LEVEL",
@@ -74,12 +69,11 @@ void declare(CLI::App& app, ReferenceOptions& options)
 		 {"--rays", takesWhole(options.rays, 1, kMaxSamples),
 		  "Rays, or samples of the volume, a point (default 256; with --max-error the most, default 4096)"},
 		 {"--max-error", takesNumber(settings.max_error, 1e-5, 1.0), "Stop at a point once its standard error is this small"},
-		 {"--lift",
-		  takesNumber(settings.lift_m, 0.0, 1e6),
+		 {"--lift", takesNumber(settings.lift_m, 0.0, 1e6),
 		  "Metres by which points may be off the level's surface beside rounding, as levels of detail are (default 0): rays begin "
 		  "that much above them",
-		  {.excludes = {{"--from depth", "none, since no ray begins anywhere"}}}}});
-	addSeed(app, settings.seed);
+		  excludes("--from depth", "none, since no ray begins anywhere")},
+		 seedRow(settings.seed)});
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kAllFormats);
 	addRun(app, options.outputs, true);
@@ -270,13 +264,6 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 
 	const Notes notes = notesOf(options);
 	const bool bent = options.settings.measure == ReferenceMeasure::bent;
-	OutputSet files;
-	for (const std::string& path : options.outputs.files)
-	{
-		files.add(path, image  ? imageBytes(formatOf(path, formats), gbuffer, values, bent, notes)
-						: bent ? bentCsv(values)
-							   : visibilityCsv(values));
-	}
 	addSettings(facts, options);
 	summarise(facts, values);
 	give("visibility", values, &ReferenceValue::visibility);
@@ -289,8 +276,13 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 					   [](const ReferenceValue& value) { return value.bent; });
 		give<float>("bent", directions, {directions.size(), 3});
 	}
-	addSide(files, options.outputs, facts.json(), read);
-	files.commit();
+	const auto bytesOf = [&](const std::string& path)
+	{
+		return image  ? imageBytes(formatOf(path, formats), gbuffer, values, bent, notes)
+			   : bent ? bentCsv(values)
+					  : visibilityCsv(values);
+	};
+	writeOutputs(options.outputs, bytesOf, facts.json(), read);
 }
 
 } // namespace

@@ -48,7 +48,7 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 	addLoadOptions(app, settings.load);
 	addCameraChoice(app, options.camera);
 	addPictureSize(app, options.camera, "320x180");
-	const OptionRules not_quick{.excludes = {{"--quick"}}};
+	const OptionRules not_quick = excludes("--quick");
 	addOptions(
 		app,
 		{{"--grid", takesChoice(namesOf<GridSize>(), settings.grid),
@@ -58,8 +58,8 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 		 {"--methods", takesText(options.methods, "LIST"),
 		  "Only these, with commas between: " + measuredNames() + " (default: all)"},
 		 {"--rays", takesWhole(settings.rays, 1, 16384), "Rays a pixel of the reference (default 1024)", not_quick},
-		 {"--repetitions", takesWhole(measure.repetitions, 1, 1000),
-		  "Drawings of each candidate, after a warm-up (default 5)", not_quick},
+		 {"--repetitions", takesWhole(measure.repetitions, 1, 1000), "Drawings of each candidate, after a warm-up (default 5)",
+		  not_quick},
 		 {"--slowest", takesNumber(measure.slowest_s, 0.0, 1e6, "SECONDS"),
 		  "Volumes that would take longer a picture are stopped, and shown as such; 0: none (default 60, with --quick 4)"},
 		 {"--quick", takesFlag(options.quick), "A first look: --grid quick --size 240x135 --rays 256 --repetitions 3 --slowest 4"},
@@ -69,19 +69,16 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 		 {"--device",
 		  takesIndex(kMeasuringDevices, [&measure](std::size_t i) { measure.device = i == 0 ? Device::gl : Device::cpu; }),
 		  "gl (default): OpenGL without a display, whatever renderer that is; or cpu: our own code"},
-		 {"--gl-device",
-		  takesWhole(measure.gl_device, 0, 255),
+		 {"--gl-device", takesWhole(measure.gl_device, 0, 255),
 		  "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)",
-		  {.excludes = {{"--device cpu", "--device gl"}}}},
+		  excludes("--device cpu", "--device gl")},
 		 {"--pictures", takesWhole(settings.pictures, 0, 64), "Pictures of each view, beside the reference (default 8)"},
 		 {"--shifts", takesWhole(settings.shifts, 0, 64),
 		  "Parts of a pixel by which views are moved to see what flickers (default 4, at least 2; 0: not measured)"},
 		 {"--frames", takesWhole(settings.frames, 2, kMostFrames),
 		  "Frames of a camera that stands, pans and walks, behind a mean over frames (default: none)"},
-		 {"--ema",
-		  takesNumber(settings.ema, 1e-6, 1.0),
-		  "With --frames: weight of the newest frame in the mean (default 0.1)",
-		  {.needs = {{"--frames"}}}},
+		 {"--ema", takesNumber(settings.ema, 1e-6, 1.0), "With --frames: weight of the newest frame in the mean (default 0.1)",
+		  needs("--frames")},
 		 {"--baseline", takesText(options.baseline, "FILE.json"),
 		  "An earlier report: exit code 7 where an error has grown (times do not count)"}});
 	addRun(app, options.outputs, true);
@@ -153,12 +150,11 @@ void settle(ErrorOptions& options)
 	}
 }
 
-void addPages(OutputSet& files, const ErrorOptions& options, std::span<const ErrorReport> reports)
+void writePages(const ErrorOptions& options, std::span<const ErrorReport> reports, const std::string& json,
+				const std::vector<std::string>& read)
 {
-	for (const std::string& path : options.outputs.files)
-	{
-		files.add(path, errorReportHtml(reports, NOOK_VERSION));
-	}
+	writeOutputs(
+		options.outputs, [&](const std::string&) { return errorReportHtml(reports, NOOK_VERSION); }, json, read);
 }
 
 void join(const ErrorOptions& options)
@@ -168,10 +164,7 @@ void join(const ErrorOptions& options)
 	{
 		reports.push_back(errorReportFrom(readFile(path), path));
 	}
-	OutputSet files;
-	addPages(files, options, reports);
-	addSide(files, options.outputs, "", options.join);
-	files.commit();
+	writePages(options, reports, "", options.join);
 }
 
 // One line for the worst, or nothing.
@@ -208,10 +201,7 @@ void measure(const ErrorOptions& options, VerbProgress& progress)
 		read.push_back(options.baseline);
 	}
 	checkRead(options.outputs, read);
-	OutputSet files;
-	addPages(files, options, {&report, 1});
-	addSide(files, options.outputs, options.outputs.json.empty() ? "" : errorReportJson(report), read);
-	files.commit();
+	writePages(options, {&report, 1}, options.outputs.json.empty() ? "" : errorReportJson(report), read);
 
 	std::string failures;
 	std::size_t failed = 0;

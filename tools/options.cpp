@@ -4,6 +4,7 @@
 #include "call.h"
 #include "core/decimal.h"
 #include "core/error.h"
+#include "core/lists.h"
 #include "core/text.h"
 #include "format/pattern_file.h"
 #include "format/tile_json.h"
@@ -33,13 +34,8 @@ std::string longName(const std::string& names)
 std::vector<std::string> writtenBy(const Outputs& outputs)
 {
 	std::vector<std::string> written = outputs.files;
-	for (const std::string& path : {outputs.json, outputs.depfile, outputs.progress})
-	{
-		if (!path.empty())
-		{
-			written.push_back(path);
-		}
-	}
+	written.insert(written.end(), {outputs.json, outputs.depfile, outputs.progress});
+	std::erase(written, "");
 	return written;
 }
 
@@ -243,24 +239,16 @@ OptionValue takesBytes(uint64_t& value)
 
 OptionValue takesIndex(std::span<const std::string_view> names, const std::function<void(std::size_t)>& choose)
 {
-	std::string listed;
-	std::string spoken;
-	for (std::size_t i = 0; i < names.size(); ++i)
-	{
-		listed += std::string(i == 0 ? "" : "|") + std::string(names[i]);
-		spoken += std::string(i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + std::string(names[i]);
-	}
-	const auto take =
-		[names = std::vector(names.begin(), names.end()), choose, spoken](const std::string& option, const std::string& text)
+	const auto take = [names = std::vector(names.begin(), names.end()), choose](const std::string& option, const std::string& text)
 	{
 		const auto found = std::find(names.begin(), names.end(), text);
 		if (found == names.end())
 		{
-			refuseValue(option, text, spoken);
+			refuseValue(option, text, spokenList(names));
 		}
 		choose(static_cast<std::size_t>(found - names.begin()));
 	};
-	return takesParsed(listed, take);
+	return takesParsed(joinedText(names, "|"), take);
 }
 
 OptionValue takesParsed(const std::string& kind, const TakeText& take)
@@ -376,6 +364,12 @@ OptionRow seedRow(uint32_t& value)
 	return {"--seed", takesWhole(value, 0, std::numeric_limits<uint32_t>::max(), "S"), "Seed of everything random (default 1)"};
 }
 
+OptionRow glDeviceRow(std::optional<int>& device, OptionRules rules)
+{
+	return {"--gl-device", takesWhole(device, 0, 255),
+			"Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)", std::move(rules)};
+}
+
 OptionRow filterRow(std::vector<std::string>& names, const std::string& help)
 {
 	return {"--filter", takesEach("KERNEL", [&names](const std::string&, const std::string& text) { names.push_back(text); }),
@@ -406,18 +400,13 @@ void addJson(CLI::App& app, std::string& json)
 
 void addOutputs(CLI::App& app, Outputs& outputs, std::span<const std::string_view> endings)
 {
-	std::string listed;
-	for (const std::string_view ending : endings)
-	{
-		listed += " " + std::string(ending);
-	}
 	const auto take = [&outputs](const std::string&, const std::string& file)
 	{
 		checkText("-o", file, "FILE");
 		outputs.files.push_back(file);
 	};
-	addOptions(app,
-			   {{"-o,--output", takesEach("FILE", take), "File to write, may be repeated; its ending picks the format:" + listed}});
+	addOptions(app, {{"-o,--output", takesEach("FILE", take),
+					  "File to write, may be repeated; its ending picks the format: " + joinedText(endings, " ")}});
 	addJson(app, outputs.json);
 	addOptions(app,
 			   {{"--depfile", takesText(outputs.depfile, "FILE"), "Lists the files that were read, as a rule for Make or Ninja"}});
@@ -540,6 +529,27 @@ void checkDistinct(const std::vector<std::string>& written, const std::vector<st
 			refuse(path + ": " + found + ", expected another file for every input and output");
 		}
 	}
+}
+
+Outputs expanded(Outputs outputs, const std::function<std::vector<std::string>(const std::string& file)>& filesOf)
+{
+	for (const std::string& file : std::exchange(outputs.files, {}))
+	{
+		const std::vector<std::string> files = filesOf(file);
+		outputs.files.insert(outputs.files.end(), files.begin(), files.end());
+	}
+	return outputs;
+}
+
+double meanOf(const std::vector<float>& values)
+{
+	return sumOver(values, [](float value) { return static_cast<double>(value); }) / static_cast<double>(values.size());
+}
+
+std::string spokenList(std::span<const std::string_view> names)
+{
+	const std::string first = joinedText(names.first(names.size() - 1), ", ");
+	return first + (first.empty() ? "" : " or ") + std::string(names.back());
 }
 
 void checkName(const std::string& name)

@@ -198,6 +198,7 @@ struct CountRange
 OptionValue takesCounts(CountRange& value, int most);
 
 OptionRow seedRow(uint32_t& value);
+OptionRow glDeviceRow(std::optional<int>& device, OptionRules rules = {});
 
 // --filter and --ema, of nook tile and nook info: what an engine does with a tile's variants behind the pass that reads them.
 OptionRow filterRow(std::vector<std::string>& names, const std::string& help);
@@ -244,6 +245,14 @@ void checkRead(const Outputs& outputs, const std::vector<std::string>& read);
 
 // No two of `written` are one file, and none is a file of `read`, by whatever name. Throws Error (usage) that names both.
 void checkDistinct(const std::vector<std::string>& written, const std::vector<std::string>& read);
+
+// The outputs with each file replaced by those that it stands for.
+Outputs expanded(Outputs outputs, const std::function<std::vector<std::string>(const std::string& file)>& filesOf);
+
+double meanOf(const std::vector<float>& values);
+
+// "a, b or c".
+std::string spokenList(std::span<const std::string_view> names);
 
 // Empty (none given) or an identifier.
 void checkName(const std::string& name);

@@ -3,7 +3,9 @@
 
 #include "core/decimal.h"
 #include "core/image.h"
+#include "core/lists.h"
 
+#include <cmath>
 #include <limits>
 
 namespace nook
@@ -255,16 +257,31 @@ void checkGBufferImport(const GBufferImport& import)
 	}
 }
 
+OptionRow falloffUnitRow(std::optional<double>& unit_m)
+{
+	return {"--falloff-u", takesNumber(unit_m, 1e-9, 1e9), "u of --falloff alchemy, metres (default: a tenth of the radius)",
+			needs("--falloff alchemy", "both or none")};
+}
+
+double falloffUnit(const std::optional<double>& unit_m, double radius_m, Falloff falloff)
+{
+	if (std::isfinite(radius_m) && radius_m > 1e9)
+	{
+		refuseValue("--radius", numberText(radius_m), "metres from 0.000001 to 1000000000, or inf");
+	}
+	if (!unit_m && falloff == Falloff::alchemy && std::isinf(radius_m))
+	{
+		refuse("--falloff-u: found none, expected metres, since the radius is without end");
+	}
+	return unit_m.value_or(0.1 * radius_m);
+}
+
 void addLevelFacts(Facts& facts, const LoadedLevel& loaded)
 {
 	facts.text("level", loaded.level.name);
 	facts.whole("triangles", loaded.level.triangles.size());
-	std::vector<std::string> findings;
-	for (const Finding& finding : loaded.diagnosis.findings)
-	{
-		findings.push_back(finding.id + " " + std::to_string(finding.count));
-	}
-	facts.texts("findings", findings);
+	facts.texts("findings", mapped(loaded.diagnosis.findings,
+								   [](const Finding& finding) { return finding.id + " " + std::to_string(finding.count); }));
 }
 
 } // namespace nook

@@ -35,7 +35,6 @@ constexpr std::array<std::string_view, 7> kAllBakeFormats{".glb", ".gltf", ".csv
 constexpr std::array<std::string_view, 5> kBakeFormats{".glb", ".gltf", ".csv", ".npy", ".json"};
 constexpr std::array<std::string_view, 2> kTextureFormats{".glb", ".gltf"};
 constexpr std::array<std::string_view, 2> kProbeFormats{".ktx2", ".glsl"};
-constexpr std::array<std::string_view, 3> kBakeFalloffs{"hard", "linear", "alchemy"};        // of Falloff, in its order
 constexpr std::array<std::string_view, 2> kBakeFits{"surface", "points"};                    // of BakeFit
 constexpr std::array<std::string_view, 2> kBakeSides{"separate", "mean"};                    // of BakeSides
 constexpr std::array<std::string_view, 2> kBakeNormals{"geometric", "interpolated"};         // of NormalKind
@@ -120,10 +119,9 @@ void declare(CLI::App& app, BakeOptions& options)
 		app,
 		{{"--radius", takesNumber(settings.radius_m, 1e-6, std::numeric_limits<double>::infinity()),
 		  "Metres that a ray reaches, to 1e9; inf: without end", kRequired},
-		 {"--falloff", takesChoice(kBakeFalloffs, settings.falloff),
+		 {"--falloff", takesChoice(kFalloffs, settings.falloff),
 		  "Weight of a surface at distance t: hard 1 (default), linear 1 - t/radius, alchemy u t / max(u, t)^2"},
-		 {"--falloff-u", takesNumber(options.falloff_u_m, 1e-9, 1e9),
-		  "u of --falloff alchemy, metres (default: a tenth of the radius)", needs("--falloff alchemy", "both or none")},
+		 falloffUnitRow(options.falloff_u_m),
 		 {"--rays", takesWhole(settings.rays, 1, kMaxSamples), "Rays a vertex, a texel or a probe (default 256)"},
 		 {"--fit", takesChoice(kBakeFits, settings.fit),
 		  "surface: values whose interpolation is nearest to rays all over the triangles (default); points: those at the vertices",
@@ -202,19 +200,11 @@ void settle(BakeOptions& options)
 	{
 		refuse("--radius: found 'inf', expected metres, since --falloff linear is a share of it");
 	}
-	if (std::isfinite(settings.radius_m) && settings.radius_m > 1e9)
-	{
-		refuseValue("--radius", numberText(settings.radius_m), "metres from 0.000001 to 1000000000, or inf");
-	}
 	if (options.outputs.share && settings.max_error > 0.0)
 	{
 		refuse("--share: found with --max-error, expected one of them, since what is split next depends on all so far");
 	}
-	if (!options.falloff_u_m && settings.falloff == Falloff::alchemy && std::isinf(settings.radius_m))
-	{
-		refuse("--falloff-u: found none, expected metres, since the radius is without end");
-	}
-	settings.falloff_u_m = options.falloff_u_m.value_or(0.1 * settings.radius_m);
+	settings.falloff_u_m = falloffUnit(options.falloff_u_m, settings.radius_m, settings.falloff);
 }
 
 void addSettings(Facts& facts, const BakeOptions& options)
@@ -227,7 +217,7 @@ void addSettings(Facts& facts, const BakeOptions& options)
 	{
 		facts.text("beside", volumesBy()[options.mask ? 1 : 0]);
 	}
-	facts.text("falloff", kBakeFalloffs[static_cast<std::size_t>(settings.falloff)]);
+	facts.text("falloff", kFalloffs[static_cast<std::size_t>(settings.falloff)]);
 	facts.number("radius_m", settings.radius_m);
 	if (settings.falloff == Falloff::alchemy)
 	{
@@ -238,9 +228,6 @@ void addSettings(Facts& facts, const BakeOptions& options)
 	if (!probes)
 	{
 		facts.text("normals", kBakeNormals[static_cast<std::size_t>(settings.normals)]);
-	}
-	if (!probes)
-	{
 		facts.text("to", options.to);
 	}
 	if (!probes && !texture)
@@ -273,11 +260,6 @@ void addCheck(Facts& facts, const BakeCheck& check, const std::string& where)
 
 void addResult(Facts& facts, const BakeOptions& options, const VertexBake& bake)
 {
-	double sum = 0.0;
-	for (const float value : bake.visibility)
-	{
-		sum += static_cast<double>(value);
-	}
 	if (bake.refined)
 	{
 		facts.whole("baked_triangles", bake.refined->triangles.size());
@@ -294,8 +276,7 @@ void addResult(Facts& facts, const BakeOptions& options, const VertexBake& bake)
 	facts.whole("buried_points", bake.buried);
 	facts.whole("shut_points", bake.shut);
 	facts.whole("rays", bake.rays);
-	facts.number(options.volumes.empty() ? "mean_visibility" : "mean_difference",
-				 sum / static_cast<double>(bake.visibility.size()));
+	facts.number(options.volumes.empty() ? "mean_visibility" : "mean_difference", meanOf(bake.visibility));
 	facts.number("rms_standard_error", bake.standard_error);
 	facts.line("bake: " + std::to_string(bake.visibility.size()) + " vertices, " + std::to_string(bake.rays) + " rays from " +
 			   std::to_string(bake.points) + " points (" + std::to_string(bake.buried) + " inside matter, " +
@@ -346,7 +327,7 @@ GltfBake bakeOf(const BakeOptions& options)
 	bake.record = {
 		{"to", options.to},
 		{"radius_m", std::isinf(settings.radius_m) ? nlohmann::ordered_json() : nlohmann::ordered_json(settings.radius_m)},
-		{"falloff", kBakeFalloffs[static_cast<std::size_t>(settings.falloff)]},
+		{"falloff", kFalloffs[static_cast<std::size_t>(settings.falloff)]},
 		{"rays", settings.rays},
 		{"version", NOOK_VERSION},
 		{"command", command}};

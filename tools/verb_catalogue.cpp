@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "emit/catalogue.h"
 #include "version.h"
@@ -48,12 +49,7 @@ std::string pathOf(const CatalogueOptions& options, const std::string& below)
 // Neither the statement nor the log is one of the catalogue's files.
 void checkPlaces(const CatalogueOptions& options, const std::vector<CatalogueEntry>& entries)
 {
-	std::vector<std::string> paths;
-	for (const CatalogueEntry& entry : entries)
-	{
-		paths.push_back(pathOf(options, entry.path));
-	}
-	checkNames(options.outputs, paths);
+	checkNames(options.outputs, mapped(entries, [&options](const CatalogueEntry& entry) { return pathOf(options, entry.path); }));
 }
 
 void makeFolders(const CatalogueOptions& options, const std::vector<CatalogueEntry>& entries, NewFolders& folders)

@@ -3,6 +3,7 @@
 #include "feature_options.h"
 
 #include "core/decimal.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "core/text.h"
 #include "emit/module.h"
@@ -327,11 +328,8 @@ std::string featuresOf(const EmitOptions& options, bool of_header)
 // The command that makes the files again, less their folders.
 std::string emitCommand(const EmitOptions& options, const std::vector<std::string>& patterns, bool glsl)
 {
-	std::string names;
-	for (const std::string& path : patterns)
-	{
-		names += (names.empty() ? "" : ",") + nativePath(path).filename().string();
-	}
+	const std::string names =
+		joinedText(patterns, ",", [](const std::string& path) { return nativePath(path).filename().string(); });
 	const ModuleSettings& settings = options.settings;
 	std::string command = "nook emit --methods " + options.methods + (names.empty() ? "" : " --patterns " + names);
 	command += options.counts.empty() ? "" : " --counts " + options.counts;

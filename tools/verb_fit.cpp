@@ -5,6 +5,7 @@
 
 #include "core/decimal.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "core/text.h"
 #include "core/work_units.h"
 #include "methods/method_table.h"
@@ -92,20 +93,8 @@ std::vector<MethodRecipe> startsOf(const FitOptions& options)
 std::string fitCommand(const FitOptions& options)
 {
 	const FitSettings& settings = options.settings;
-	std::string command = "nook fit";
-	const auto words = [&command](const std::vector<std::string>& levels)
-	{
-		for (const std::string& level : levels)
-		{
-			command += " " + shellWord(level);
-		}
-	};
-	words(options.levels);
-	if (!options.held_out.empty())
-	{
-		command += " --held-out";
-		words(options.held_out);
-	}
+	std::string command = "nook fit " + joinedText(options.levels, " ", shellWord);
+	command += options.held_out.empty() ? "" : " --held-out " + joinedText(options.held_out, " ", shellWord);
 	command += options.methods.empty() ? "" : " --methods " + options.methods;
 	command += options.start.empty() ? "" : " --start " + shellWord(options.start);
 	command += settings.radius_m > 0.0 ? " --radius " + numberText(settings.radius_m) : "";

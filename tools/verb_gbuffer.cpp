@@ -123,13 +123,8 @@ void cast(const GBufferOptions& options, VerbProgress& progress)
 	refuseGiven(*options.app, kChannelOptions, "with '" + options.level.level + "', expected a G-buffer (.exr)");
 	checkCameras(options.camera);
 	const auto count = static_cast<std::size_t>(pictureCount(options.camera));
-	Outputs outputs = options.outputs;
-	outputs.files.clear();
-	for (const std::string& file : options.outputs.files)
-	{
-		const std::vector<std::string> files = pictureFiles(file, static_cast<int>(count));
-		outputs.files.insert(outputs.files.end(), files.begin(), files.end());
-	}
+	const Outputs outputs =
+		expanded(options.outputs, [count](const std::string& file) { return pictureFiles(file, static_cast<int>(count)); });
 	checkOutputs(outputs, kGBufferFormats, {options.level.level});
 	const RunSettings settings = progress.start("gbuffer", options.outputs.threads, options.outputs.progress);
 	const std::shared_ptr<const LoadedLevel> shared = levelOf(options.level.level, options.level.load, settings);

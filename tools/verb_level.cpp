@@ -4,6 +4,7 @@
 
 #include "core/decimal.h"
 #include "core/error.h"
+#include "core/lists.h"
 #include "scene/camera_choice.h"
 #include "scene/level.h"
 #include "scene/level_glb.h"
@@ -78,11 +79,8 @@ constexpr unsigned kMostCells = 4096;
 // "4x3" or "4x2x3": along x and z, or x, y and z.
 glm::uvec3 gridOfText(const std::string& name, const std::string& text)
 {
-	std::vector<unsigned> counts;
-	for (const std::string& part : partsOf(text, 'x'))
-	{
-		counts.push_back(std::min(numberFrom<unsigned>(part).value_or(0), kMostCells + 1));
-	}
+	const auto counts = mapped(partsOf(text, 'x'), [](const std::string& part)
+							   { return std::min(numberFrom<unsigned>(part).value_or(0), kMostCells + 1); });
 	const glm::uvec3 grid = counts.size() == 2   ? glm::uvec3(counts[0], 1, counts[1])
 							: counts.size() == 3 ? glm::uvec3(counts[0], counts[1], counts[2])
 												 : glm::uvec3(0);
@@ -101,12 +99,7 @@ std::string cornerText(glm::dvec3 p)
 
 std::size_t aroundOf(const Level& level)
 {
-	std::size_t count = 0;
-	for (const Mesh& mesh : level.meshes)
-	{
-		count += mesh.around ? mesh.triangle_count : 0;
-	}
-	return count;
+	return sumOver(level.meshes, [](const Mesh& mesh) { return mesh.around ? mesh.triangle_count : 0; });
 }
 
 // The files that `-o` stands for: itself, or NAME-X-Z.glb for each cell of a grid, NAME-X-Y-Z.glb where it is higher than one.
@@ -181,13 +174,8 @@ void cutCells(const Level& level, const CellOptions& options, Facts& facts, cons
 // Parts of the level, a file each that is not empty.
 void runCells(const ConvertOptions& options, VerbProgress& progress)
 {
-	Outputs outputs = options.outputs;
-	outputs.files.clear();
-	for (const std::string& file : options.outputs.files)
-	{
-		const std::vector<std::string> files = cellFiles(options.cells, file);
-		outputs.files.insert(outputs.files.end(), files.begin(), files.end());
-	}
+	const Outputs outputs =
+		expanded(options.outputs, [&options](const std::string& file) { return cellFiles(options.cells, file); });
 	checkOutputs(outputs, kLevelFormats, options.levels);
 	const RunSettings settings = progress.start("level", options.outputs.threads, options.outputs.progress);
 	const LoadedLevel loaded = loadLevels(placesOf(options), options.load, settings);
@@ -240,20 +228,16 @@ void run(ConvertOptions& options, VerbProgress& progress)
 	{
 		addCameras(loaded.level, options.cameras, settings);
 	}
-	OutputSet files;
+	std::string bytes;
 	if (!options.outputs.files.empty())
 	{
 		const ProgressCounter stage(settings.progress, "file");
-		const std::string bytes = levelGlb(loaded.level, "nook " NOOK_VERSION);
-		for (const std::string& path : options.outputs.files)
-		{
-			files.add(path, bytes);
-		}
+		bytes = levelGlb(loaded.level, "nook " NOOK_VERSION);
 	}
 	Facts facts = verbFacts("level");
 	addLevelFacts(facts, loaded);
-	addSide(files, options.outputs, facts.json(), loaded.level.files);
-	files.commit();
+	writeOutputs(
+		options.outputs, [&bytes](const std::string&) { return bytes; }, facts.json(), loaded.level.files);
 }
 
 void declare(CLI::App& app, ConvertOptions& options)

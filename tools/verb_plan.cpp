@@ -6,6 +6,7 @@
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "core/text.h"
 #include "farm/plan.h"
@@ -343,17 +344,14 @@ Plan planOfCommand(const PlanOptions& options)
 	PixelsOf pixels;
 	PlanCommand command =
 		planCommandOf(options.words, here, {"job", {}, options.shares, options.minutes, options.mebibytes}, pixels);
-	std::string title = "nook";
-	for (const std::string& word : options.words)
-	{
-		title += " " + word;
-	}
 	for (const std::string& output : command.outputs)
 	{
 		checkWritable(output);
 	}
-	return planOf({std::move(command)}, {title, NOOK_VERSION, options.program, relativeTo(here, folder), options.engine, {}, {}},
-				  relativeTo(folder, here));
+	return planOf(
+		{std::move(command)},
+		{"nook " + joinedText(options.words, " "), NOOK_VERSION, options.program, relativeTo(here, folder), options.engine, {}, {}},
+		relativeTo(folder, here));
 }
 
 // A list of levels, whose steps run in the folder of -o. The plan is in its folder `plan`.
@@ -404,12 +402,8 @@ std::string durationText(double seconds)
 
 double coreSeconds(const Plan& plan)
 {
-	double sum = 0.0;
-	for (const PlanGroup& group : plan.groups)
-	{
-		sum += group.needs.seconds * group.needs.threads * static_cast<double>(group.count);
-	}
-	return sum;
+	return sumOver(plan.groups, [](const PlanGroup& group)
+				   { return group.needs.seconds * group.needs.threads * static_cast<double>(group.count); });
 }
 
 std::string planText(const Plan& plan)

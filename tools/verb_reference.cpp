@@ -4,6 +4,7 @@
 #include "scene_options.h"
 
 #include "core/decimal.h"
+#include "core/lists.h"
 #include "core/work_units.h"
 #include "format/pattern_file.h"
 #include "scene/reference.h"
@@ -24,7 +25,6 @@ constexpr std::array<std::string_view, 2> kImageFormats{".exr", ".png"};
 constexpr std::array<std::string_view, 1> kPointFormats{".csv"};
 constexpr std::array<std::string_view, 3> kAllFormats{".exr", ".png", ".csv"};
 constexpr std::array<std::string_view, 5> kMeasures{"obscurance", "sphere", "hemisphere", "box", "bent"};
-constexpr std::array<std::string_view, 3> kFalloffs{"hard", "linear", "alchemy"};
 constexpr std::array<std::string_view, 2> kSources{"geometry", "depth"};
 
 struct ReferenceOptions
@@ -59,8 +59,7 @@ void declare(CLI::App& app, ReferenceOptions& options)
 		 {"--falloff", takesChoice(kFalloffs, settings.falloff),
 		  "Weight of a surface at distance t: hard 1 (default), linear 1 - t/radius, alchemy u t / max(u, t)^2",
 		  excludes(volumes, "--measure obscurance or bent", "with the open share of a volume")},
-		 {"--falloff-u", takesNumber(options.falloff_u_m, 1e-9, 1e9),
-		  "u of --falloff alchemy, metres (default: a tenth of the radius)", needs("--falloff alchemy", "both or none")},
+		 falloffUnitRow(options.falloff_u_m),
 		 {"--from",
 		  takesChoice(kSources, settings.source),
 		  "What the volume holds: the level's solids (default), or whatever is behind the depth buffer, which needs no LEVEL",
@@ -98,10 +97,6 @@ void settle(ReferenceOptions& options)
 	{
 		refuse("--radius: found 'inf', expected metres, since what is measured is a share of it");
 	}
-	if (std::isfinite(settings.radius_m) && settings.radius_m > 1e9)
-	{
-		refuseValue("--radius", numberText(settings.radius_m), "metres from 0.000001 to 1000000000, or inf");
-	}
 	if (!options.points.empty() && (fromDepth(settings) || settings.measure == ReferenceMeasure::box))
 	{
 		refuse("--points: found with a measure that needs a camera, expected --gbuffer FILE.exr");
@@ -114,11 +109,7 @@ void settle(ReferenceOptions& options)
 	{
 		refuse("LEVEL: found with --from depth, expected none, since the depth buffer alone decides");
 	}
-	if (!options.falloff_u_m && settings.falloff == Falloff::alchemy && std::isinf(settings.radius_m))
-	{
-		refuse("--falloff-u: found none, expected metres, since the radius is without end");
-	}
-	settings.falloff_u_m = options.falloff_u_m.value_or(0.1 * settings.radius_m);
+	settings.falloff_u_m = falloffUnit(options.falloff_u_m, settings.radius_m, settings.falloff);
 	settings.rays = options.rays.value_or(settings.max_error > 0.0 ? 4096 : settings.rays);
 	checkGBufferImport(options.import);
 }
@@ -271,10 +262,7 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 	give("rays", values, &ReferenceValue::rays);
 	if (bent)
 	{
-		std::vector<glm::vec3> directions;
-		std::transform(values.begin(), values.end(), std::back_inserter(directions),
-					   [](const ReferenceValue& value) { return value.bent; });
-		give<float>("bent", directions, {directions.size(), 3});
+		give<float>("bent", mapped(values, [](const ReferenceValue& value) { return value.bent; }), {values.size(), 3});
 	}
 	const auto bytesOf = [&](const std::string& path)
 	{

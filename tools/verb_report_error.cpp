@@ -6,6 +6,7 @@
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "core/text.h"
 #include "core/work_units.h"
 #include "methods/method_table.h"
@@ -69,9 +70,7 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 		 {"--device",
 		  takesIndex(kMeasuringDevices, [&measure](std::size_t i) { measure.device = i == 0 ? Device::gl : Device::cpu; }),
 		  "gl (default): OpenGL without a display, whatever renderer that is; or cpu: our own code"},
-		 {"--gl-device", takesWhole(measure.gl_device, 0, 255),
-		  "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)",
-		  excludes("--device cpu", "--device gl")},
+		 glDeviceRow(measure.gl_device, excludes("--device cpu", "--device gl")),
 		 {"--pictures", takesWhole(settings.pictures, 0, 64), "Pictures of each view, beside the reference (default 8)"},
 		 {"--shifts", takesWhole(settings.shifts, 0, 64),
 		  "Parts of a pixel by which views are moved to see what flickers (default 4, at least 2; 0: not measured)"},
@@ -159,12 +158,11 @@ void writePages(const ErrorOptions& options, std::span<const ErrorReport> report
 
 void join(const ErrorOptions& options)
 {
-	std::vector<ErrorReport> reports;
-	for (const std::string& path : options.join)
+	const auto read = [](const std::string& path)
 	{
-		reports.push_back(errorReportFrom(readFile(path), path));
-	}
-	writePages(options, reports, "", options.join);
+		return errorReportFrom(readFile(path), path);
+	};
+	writePages(options, mapped(options.join, read), "", options.join);
 }
 
 // One line for the worst, or nothing.

@@ -55,8 +55,7 @@ void declareTimes(CLI::App& app, TimesOptions& options)
 			   "Drawings of each candidate, after a warm-up (default 9)"},
 			  {"--seconds", takesNumber(settings.seconds, 0.0, 1e6),
 			   "Begins no further picture after this time, and counts those left out; 0 (default): no limit"},
-			  {"--gl-device", takesWhole(settings.measure.gl_device, 0, 255),
-			   "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)"}});
+			  glDeviceRow(settings.measure.gl_device)});
 	addJson(app, options.outputs.json);
 	addRun(app, options.outputs);
 }

@@ -6,6 +6,7 @@
 
 #include "core/decimal.h"
 #include "core/image.h"
+#include "core/lists.h"
 #include "emit/module.h"
 #include "format/pattern_file.h"
 #include "scene/reference.h"
@@ -61,11 +62,7 @@ std::span<const std::string_view> allMethods()
 {
 	static const std::vector<std::string_view> methods = []
 	{
-		std::vector<std::string_view> all;
-		for (const MethodRow& row : methodTable())
-		{
-			all.push_back(row.name);
-		}
+		std::vector<std::string_view> all = mapped(methodTable(), [](const MethodRow& row) { return row.name; });
 		for (const AssetKind* const kind : kindsBesideMethods())
 		{
 			all.push_back(kind->name);
@@ -78,27 +75,19 @@ std::span<const std::string_view> allMethods()
 // "vo-line: volumetric obscurance by lines; ...; bake: of --bake"
 std::string whatMethodsAre()
 {
-	std::string text;
-	for (const MethodRow& row : methodTable())
+	const auto textOfRow = [](const MethodRow& row)
 	{
-		text += (text.empty() ? "" : "; ") + std::string(row.name) + ": " + std::string(row.what);
-	}
-	for (const AssetKind* const kind : kindsBesideMethods())
-	{
-		text += "; " + std::string(kind->name) + ": of " + std::string(kind->option);
-	}
-	return text;
+		return std::string(row.name) + ": " + std::string(row.what);
+	};
+	return joinedText(methodTable(), "; ", textOfRow) +
+		   joinedText(kindsBesideMethods(), "",
+					  [](const AssetKind* kind) { return "; " + std::string(kind->name) + ": of " + std::string(kind->option); });
 }
 
 // "--method bake": the kinds of assets that are drawn by themselves.
 std::string methodsAlone()
 {
-	std::string names;
-	for (const AssetKind* const kind : kindsBesideMethods())
-	{
-		names += (names.empty() ? "--method " : "|") + std::string(kind->name);
-	}
-	return names;
+	return "--method " + joinedText(kindsBesideMethods(), "|", [](const AssetKind* kind) { return kind->name; });
 }
 
 // Files of kinds that are drawn by their rows alone.
@@ -240,9 +229,7 @@ void declare(CLI::App& app, ShadeOptions& options)
 					  "full (default), or half: every second pixel of both axes, the others from those of their surface; " +
 						  volumeMethods(" and ") + ": third or fifth"},
 					 {"--device", takesChoice(kDevices, compose.gl), "cpu (default), or gl: OpenGL 3.3 without a display"},
-					 {"--gl-device", takesWhole(compose.drawing.gl_device, 0, 255),
-					  "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)",
-					  needs("--device gl", "--device gl", "with --device cpu")},
+					 glDeviceRow(compose.drawing.gl_device, needs("--device gl", "--device gl", "with --device cpu")),
 					 debugRow(settings),
 					 {"--timing", takesFlag(options.timing),
 					  "Prints the renderer and the milliseconds of the picture and of each pass: medians of 9 drawings after a "
@@ -496,16 +483,6 @@ void addTimes(Facts& facts, const Shaded& shaded)
 		item.number("milliseconds", 1e3 * pass.seconds);
 	}
 	facts.items("passes", std::move(passes));
-}
-
-double meanOf(const std::vector<float>& values)
-{
-	double sum = 0.0;
-	for (const float value : values)
-	{
-		sum += static_cast<double>(value);
-	}
-	return sum / static_cast<double>(values.size());
 }
 
 Facts factsOf(const ShadeOptions& options, const GBuffer& gbuffer, const Composed& drawn, const Picture& picture)

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "emit/module.h"
 #include "methods/method_table.h"
 #include "study/command_words.h"
@@ -75,8 +76,7 @@ void declare(CLI::App& app, TuneOptions& options)
 		{{"--views", takesWhole(settings.views, 1, 64), "Views of each level, the most informative ones (default 4)"},
 		 {"--rays", takesWhole(settings.reference_rays, 1, 1 << 20), "Rays a pixel of the reference (default 256)"},
 		 {"--repetitions", takesWhole(settings.repetitions, 1, 1000), "Drawings of what gets to the end (default 7)"},
-		 {"--gl-device", takesWhole(settings.gl_device, 0, 255),
-		  "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)"},
+		 glDeviceRow(settings.gl_device),
 		 {"--glsl", takesChoice(glslTargets(), options.emit.target),
 		  "Language of the shader: OpenGL 3.3 (default), OpenGL 4.3, OpenGL ES 3.0, or Vulkan; volumes are in the first two",
 		  with_files},
@@ -211,11 +211,7 @@ void check(TuneOptions& options)
 // Returns the command as it was given, without outputs.
 std::string tuneCommand(const TuneOptions& options)
 {
-	std::string command = "nook tune";
-	for (const std::string& level : options.levels)
-	{
-		command += " " + shellWord(level);
-	}
+	std::string command = "nook tune " + joinedText(options.levels, " ", shellWord);
 	for (const CLI::Option* const option : options.app->get_options())
 	{
 		const std::string name = option->get_name();

@@ -2,7 +2,6 @@
 // 128-bit content hash as text. Not cryptographic.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>

@@ -2,6 +2,7 @@
 #include "core/file.h"
 
 #include "core/error.h"
+#include "core/lists.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -103,12 +104,7 @@ std::string escaped(const std::string& path, Side side)
 
 std::string depfileText(std::span<const std::string> targets, std::span<const std::string> sources)
 {
-	std::string text;
-	for (const std::string& target : targets)
-	{
-		text += (text.empty() ? "" : " ") + escaped(target, Side::target);
-	}
-	text += ":";
+	std::string text = joinedText(targets, " ", [](const std::string& target) { return escaped(target, Side::target); }) + ":";
 	for (const std::string& source : sources)
 	{
 		text += " \\\n  " + escaped(source, Side::source);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/facts.h"
 
+#include "core/lists.h"
 #include "core/text.h"
 
 #include <algorithm>
@@ -18,16 +19,6 @@ std::string numberJson(double value)
 	return std::isfinite(value) ? doubleText(value) : "null";
 }
 
-template <class Values, class Text> std::string listJson(const Values& values, const Text& textOf)
-{
-	std::string json;
-	for (const auto& value : values)
-	{
-		json += (json.empty() ? "" : ", ") + textOf(value);
-	}
-	return "[" + json + "]";
-}
-
 // In one line.
 std::string itemJson(std::string_view fields)
 {
@@ -37,16 +28,6 @@ std::string itemJson(std::string_view fields)
 		line += c == '\n' ? "" : std::string(1, c == '\t' ? ' ' : c);
 	}
 	return "{" + line + " }";
-}
-
-std::string measuresJson(const std::vector<Measure>& measures)
-{
-	std::string json;
-	for (const Measure& measure : measures)
-	{
-		json += (json.empty() ? "\n\t\t" : ",\n\t\t") + jsonText(measure.name) + ": " + numberJson(measure.value);
-	}
-	return "{" + json + "\n\t}";
 }
 
 } // namespace
@@ -117,20 +98,19 @@ std::string Facts::fields() const
 		}
 		std::string operator()(const std::vector<std::string>& values) const
 		{
-			return listJson(values, [](const std::string& value) { return jsonText(value); });
+			return "[" + joinedText(values, ", ", jsonText) + "]";
 		}
 		std::string operator()(const std::vector<double>& values) const
 		{
-			return listJson(values, numberJson);
+			return "[" + joinedText(values, ", ", numberJson) + "]";
 		}
 		std::string operator()(const std::vector<Facts>& values) const
 		{
-			std::string json;
-			for (const Facts& item : values)
+			const auto textOf = [](const Facts& item)
 			{
-				json += (json.empty() ? "\n\t\t" : ",\n\t\t") + itemJson(item.fields());
-			}
-			return json.empty() ? "[]" : "[" + json + "\n\t]";
+				return "\n\t\t" + itemJson(item.fields());
+			};
+			return values.empty() ? "[]" : "[" + joinedText(values, ",", textOf) + "\n\t]";
 		}
 	};
 	std::string json;
@@ -174,6 +154,15 @@ std::string Facts::lines() const
 		lines += fact.unit + "\n";
 	}
 	return lines;
+}
+
+std::string measuresJson(const std::vector<Measure>& measures)
+{
+	const auto textOf = [](const Measure& measure)
+	{
+		return "\n\t\t" + jsonText(measure.name) + ": " + numberJson(measure.value);
+	};
+	return "{" + joinedText(measures, ",", textOf) + "\n\t}";
 }
 
 std::string measureLines(const std::vector<Measure>& measures)

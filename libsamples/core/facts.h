@@ -62,7 +62,8 @@ private:
 	std::vector<Fact> m_facts;
 };
 
-// Measures for people, one per line in columns.
+// Measures as a JSON object, one per line; and for people, one per line in columns.
+std::string measuresJson(const std::vector<Measure>& measures);
 std::string measureLines(const std::vector<Measure>& measures);
 
 } // namespace nook

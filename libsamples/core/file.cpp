@@ -4,13 +4,10 @@
 #include "core/error.h"
 #include "core/system.h"
 
-#include <atomic>
 #include <cerrno>
 #include <csignal>
-#include <cstddef>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 #include <utility>
 

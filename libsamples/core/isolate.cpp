@@ -2,7 +2,6 @@
 #include "core/isolate.h"
 
 #include "core/error.h"
-#include "core/value_stream.h"
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -16,14 +15,12 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <map>
 #include <memory>
 #include <mutex>
-#include <string>
 #include <vector>
 
 namespace nook

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/decimal.h"
 #include "core/text.h"
 #include "emit/module.h"
 #include "emit/module_parts.h"

@@ -6,7 +6,6 @@
 #include "core/text.h"
 #include "pattern/quality.h"
 #include "pattern/recipe.h"
-#include "pattern/tile.h"
 
 #include <string>
 #include <vector>

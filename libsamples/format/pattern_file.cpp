@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/json_reader.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "core/text.h"
 #include "format/arrays.h"
@@ -28,14 +29,9 @@ constexpr std::array<std::string_view, 9> kFormats{".json", ".h", ".glsl", ".hls
 
 [[noreturn]] void refuseFormat(const std::string& path, std::span<const std::string_view> formats)
 {
-	std::string names;
-	for (const std::string_view name : formats)
-	{
-		names += (names.empty() ? "" : ", ") + std::string(name);
-	}
 	const std::string ending = nativePath(path).extension().string();
-	throw Error(ExitCode::usage,
-				path + ": found " + (ending.empty() ? "no ending" : "the ending " + ending) + ", expected one of " + names);
+	throw Error(ExitCode::usage, path + ": found " + (ending.empty() ? "no ending" : "the ending " + ending) +
+									 ", expected one of " + joinedText(formats, ", "));
 }
 
 std::string sourceBytes(std::string_view format, const Source& source, std::span<const std::string_view> formats)

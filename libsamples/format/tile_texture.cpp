@@ -2,6 +2,7 @@
 #include "format/tile_texture.h"
 
 #include "core/image.h"
+#include "core/lists.h"
 #include "core/round.h"
 #include "core/text.h"
 #include "format/arrays.h"
@@ -115,11 +116,7 @@ std::string tilePng(const PatternTile& tile, const TileQuality& quality, const E
 		numbers[i] = static_cast<uint16_t>(32768.0 + std::floor(32767.0 * std::clamp(share, -1.0, 1.0) + 0.5));
 	}
 	Notes notes = textureNotes(texture, quality, context);
-	std::string ranges;
-	for (const float range : texture.range)
-	{
-		ranges += (ranges.empty() ? "" : ", ") + floatText(range);
-	}
+	const std::string ranges = joinedText(texture.range, ", ", [](float range) { return floatText(range); });
 	notes.push_back({"Encoding", "value = (v - 32768) / 32767 * range, v = 0 to 65535; range of RGBA = " + ranges});
 	return pngBytes(texture.width_px, texture.height_px, numbers, notes);
 }

@@ -9,7 +9,6 @@
 #include <glm/vec2.hpp>
 
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace nook

@@ -17,6 +17,7 @@
 // each axis.
 #include "pattern/energy.h"
 
+#include "core/lists.h"
 #include "core/parallel.h"
 #include "pattern/energy_rows.h"
 
@@ -266,11 +267,7 @@ double tileSquaredError(Domain domain, const TileShares& shares, std::span<const
 						}
 					}
 				});
-	double total = 0.0;
-	for (const double share : shares.pairs)
-	{
-		total += share;
-	}
+	double total = sumOver(shares.pairs);
 	if (gradient != nullptr)
 	{
 		gradient->points.resize(samples.size());

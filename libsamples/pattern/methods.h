@@ -5,7 +5,6 @@
 #include "core/progress.h"
 #include "core/random.h"
 #include "pattern/cells.h"
-#include "pattern/energy.h"
 #include "pattern/layout.h"
 #include "pattern/recipe.h"
 

@@ -6,13 +6,13 @@
 
 #include "core/decimal.h"
 #include "core/error.h"
+#include "core/lists.h"
 #include "core/round.h"
 #include "core/text.h"
 #include "pattern/tile_parts.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <limits>
 #include <optional>
 
@@ -98,11 +98,7 @@ TileShares seenShares(const TileRecipe& recipe)
 	{
 		addShares(all, shares, scale / shares.pairs[0]);
 	};
-	double sum = 0.0;
-	for (const TileFilter& filter : recipe.filters)
-	{
-		sum += filter.share;
-	}
+	const double sum = sumOver(recipe.filters, [](const TileFilter& filter) { return filter.share; });
 	for (const TileFilter& filter : recipe.filters)
 	{
 		const double share = filter.share / sum;

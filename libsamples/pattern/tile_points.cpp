@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Variants with their own points and weights, found by one descent over all of them.
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/round.h"
@@ -547,12 +548,7 @@ std::vector<TileTransform> descendedTransforms(const Pattern& base, const TileRe
 					values[k] = minimise(objective, ends[k], watched);
 				});
 	const std::size_t best = static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin());
-	std::vector<TileTransform> result;
-	for (std::size_t v = 0; v < variants; ++v)
-	{
-		result.push_back(TransformsError::transformOf(ends[best], v));
-	}
-	return result;
+	return listOf(variants, [&](std::size_t v) { return TransformsError::transformOf(ends[best], v); });
 }
 
 PatternTile copiesOf(const Pattern& base, std::vector<TileTransform> transforms)

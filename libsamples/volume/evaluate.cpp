@@ -20,7 +20,6 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <string>
 
 namespace nook
 {

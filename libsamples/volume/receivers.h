@@ -110,4 +110,7 @@ std::vector<double> sumsAt(const VolumeSet& volumes, std::span<const ReferencePo
 VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::span<const ReferencePoint> receivers,
 						   const RunSettings& run, std::span<const double> behind = {});
 
+// Of a convex polygon.
+double polygonArea(std::span<const glm::dvec3> corners);
+
 } // namespace nook

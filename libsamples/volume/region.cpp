@@ -5,9 +5,6 @@
 #include "core/math.h"
 #include "core/parallel.h"
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>

@@ -2,7 +2,6 @@
 #include "volume/volume_glb.h"
 
 #include "core/error.h"
-#include "core/file.h"
 #include "core/json_text.h"
 #include "core/text.h"
 #include "scene/level_glb.h"
@@ -13,8 +12,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
-#include <cmath>
 #include <cstring>
 
 namespace nook

@@ -208,7 +208,7 @@ void run(const std::vector<std::string>& command, VerbProgress& progress)
 	}
 	catch (const CLI::ParseError& error)
 	{
-		throw Error(ExitCode::usage, misuseText(nook, error));
+		refuse(misuseText(nook, error));
 	}
 	catch (const Error& error)
 	{
@@ -328,8 +328,7 @@ void runVerb(const Verb& verb, VerbProgress& progress)
 	{
 		if (!share.empty())
 		{
-			throw Error(ExitCode::usage,
-						"--share: found without --cache, expected --cache DIR, where the share's results are kept");
+			refuse("--share: found without --cache, expected --cache DIR, where the share's results are kept");
 		}
 		verb.run(progress);
 		return;

@@ -9,6 +9,7 @@
 #include "bake/texture.h"
 #include "core/decimal.h"
 #include "core/image.h"
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/system.h"
 #include "core/text.h"
@@ -346,14 +347,8 @@ GltfBaked write(const BakeOptions& options, const BakeInput& input, const Level&
 				const RunSettings& how)
 {
 	std::vector<GltfPlace> places;
-	std::vector<std::string> outputs;
-	for (const std::string& path : options.outputs.files)
-	{
-		if (!isValues(path))
-		{
-			outputs.push_back(path);
-		}
-	}
+	std::vector<std::string> outputs = options.outputs.files;
+	std::erase_if(outputs, isValues);
 	outputs.resize(std::max<std::size_t>(outputs.size(), 1), "-"); // its size is reported in any case
 	std::optional<GltfFile> file;
 	if (input.in_place)
@@ -508,12 +503,7 @@ Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& fact
 	{
 		return {};
 	}
-	std::vector<uint8_t> rgb;
-	rgb.reserve(3 * bake.values.size());
-	for (const uint8_t value : bake.values)
-	{
-		rgb.insert(rgb.end(), {value, value, value});
-	}
+	std::vector<uint8_t> rgb = listOf(3 * bake.values.size(), [&bake](std::size_t i) { return bake.values[i / 3]; });
 	const std::string png = pngBytes(bake.size_px, bake.size_px, rgb, {});
 	give<uint8_t>("texels", bake.values, {static_cast<std::size_t>(bake.size_px), static_cast<std::size_t>(bake.size_px)});
 	GltfBake in = bakeOf(options);

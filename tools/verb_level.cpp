@@ -62,9 +62,8 @@ std::vector<PlacedLevel> placesOf(const ConvertOptions& options)
 {
 	if (!options.moves.empty() && options.moves.size() != options.levels.size())
 	{
-		throw Error(ExitCode::usage, "--move: found " + std::to_string(options.moves.size()) + " for " +
-										 std::to_string(options.levels.size()) +
-										 " levels, expected one for each level, in their order");
+		refuse("--move: found " + std::to_string(options.moves.size()) + " for " + std::to_string(options.levels.size()) +
+			   " levels, expected one for each level, in their order");
 	}
 	std::vector<PlacedLevel> places;
 	for (const std::string& name : options.levels)

@@ -458,8 +458,7 @@ void writePlan(const Plan& plan, const std::string& folder)
 	{
 		if (const Plan old = readPlan(readFile(file.string()), file.string()); old.title != plan.title)
 		{
-			throw Error(ExitCode::usage,
-						folder + ": found the plan of '" + old.title + "', expected that of '" + plan.title + "', or a new folder");
+			refuse(folder + ": found the plan of '" + old.title + "', expected that of '" + plan.title + "', or a new folder");
 		}
 	}
 	std::error_code failed;
@@ -508,17 +507,17 @@ void checkForm(const PlanOptions& options)
 	{
 		if (!options.status.empty() && option->count() > 0 && option->get_name() != "--status" && option->get_name() != "--json")
 		{
-			throw Error(ExitCode::usage, "--status: found with " + option->get_name() + ", expected it alone, or with --json");
+			refuse("--status: found with " + option->get_name() + ", expected it alone, or with --json");
 		}
 	}
 	if (options.status.empty() && options.words.empty())
 	{
-		throw Error(ExitCode::usage, "the command: found none, expected nook plan OPTIONS -- VERB ARGUMENTS, nook plan OPTIONS "
-									 "LEVELS.json, or --status DIR");
+		refuse("the command: found none, expected nook plan OPTIONS -- VERB ARGUMENTS, nook plan OPTIONS "
+			   "LEVELS.json, or --status DIR");
 	}
 	if (options.status.empty() && options.folder.empty())
 	{
-		throw Error(ExitCode::usage, "-o: found none, expected a folder for the plan");
+		refuse("-o: found none, expected a folder for the plan");
 	}
 	if (!options.outputs.json.empty())
 	{
@@ -537,7 +536,7 @@ void run(PlanOptions& options, VerbProgress&)
 	const bool list = options.words.size() == 1 && options.words.front().ends_with(".json");
 	if (list && (options.shares > 1 || options.minutes > 0 || options.mebibytes > 0))
 	{
-		throw Error(ExitCode::usage, "--shares, --minutes, --memory: found with a list of levels, expected them in its steps");
+		refuse("--shares, --minutes, --memory: found with a list of levels, expected them in its steps");
 	}
 	const Plan plan = list ? planOfLevels(options) : planOfCommand(options);
 	const std::string folder = list ? options.folder + "/plan" : options.folder;

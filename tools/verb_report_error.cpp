@@ -97,13 +97,13 @@ void checkJoin(const ErrorOptions& options)
 	{
 		if (option->count() > 0)
 		{
-			throw Error(ExitCode::usage, option->get_name() + ": found with --join, which measures nothing, expected one of them");
+			refuse(option->get_name() + ": found with --join, which measures nothing, expected one of them");
 		}
 	}
 	if (!options.settings.levels.empty() || !options.outputs.json.empty())
 	{
-		throw Error(ExitCode::usage, std::string(options.settings.levels.empty() ? "--json" : "LEVEL") +
-										 ": found with --join, which measures nothing, expected -o FILE.html alone");
+		refuse(std::string(options.settings.levels.empty() ? "--json" : "LEVEL") +
+			   ": found with --join, which measures nothing, expected -o FILE.html alone");
 	}
 }
 
@@ -117,7 +117,7 @@ void settle(ErrorOptions& options)
 	}
 	if (settings.levels.empty())
 	{
-		throw Error(ExitCode::usage, "LEVEL: found none, expected a level, or --join FILE.json");
+		refuse("LEVEL: found none, expected a level, or --join FILE.json");
 	}
 	settings.methods = partsOf(options.methods);
 	for (const std::string& method : settings.methods)
@@ -238,37 +238,39 @@ void measure(const ErrorOptions& options, VerbProgress& progress)
 	}
 }
 
+void declareReport(CLI::App& app, ErrorOptions& options)
+{
+	app.add_option("LEVEL", options.settings.levels, "Levels (.gltf .glb .obj .fbx .ply .stl), or builtin:NAME")
+		->type_name("LEVEL");
+	declareMeasuring(app, options);
+	app.add_option("--join", options.join, "Reports of several renderers (JSON) side by side on one page; nothing is measured")
+		->type_name("FILE.json");
+	addOutputs(app, options.outputs, kPages);
+}
+
+void runReport(ErrorOptions& options, VerbProgress& progress)
+{
+	settle(options);
+	std::vector<std::string> inputs = options.join;
+	inputs.insert(inputs.end(), options.settings.levels.begin(), options.settings.levels.end());
+	inputs.push_back(options.baseline);
+	std::erase(inputs, "");
+	checkOutputs(options.outputs, kPages, inputs);
+	if (options.join.empty())
+	{
+		measure(options, progress);
+	}
+	else
+	{
+		join(options);
+	}
+}
+
 } // namespace
 
 Verb addReportError(CLI::App& report)
 {
-	const auto options = std::make_shared<ErrorOptions>();
-	CLI::App* const app = report.add_subcommand("error", "Time against error of every method on levels");
-	app->add_option("LEVEL", options->settings.levels, "Levels (.gltf .glb .obj .fbx .ply .stl), or builtin:NAME")
-		->type_name("LEVEL");
-	declareMeasuring(*app, *options);
-	app->add_option("--join", options->join, "Reports of several renderers (JSON) side by side on one page; nothing is measured")
-		->type_name("FILE.json");
-	addOutputs(*app, options->outputs, kPages);
-	return {app, [options](VerbProgress& progress)
-			{
-				settle(*options);
-				std::vector<std::string> inputs = options->join;
-				inputs.insert(inputs.end(), options->settings.levels.begin(), options->settings.levels.end());
-				if (!options->baseline.empty())
-				{
-					inputs.push_back(options->baseline);
-				}
-				checkOutputs(options->outputs, kPages, inputs);
-				if (options->join.empty())
-				{
-					measure(*options, progress);
-				}
-				else
-				{
-					join(*options);
-				}
-			}};
+	return addVerb<ErrorOptions>(report, "error", "Time against error of every method on levels", declareReport, runReport);
 }
 
 } // namespace nook

@@ -160,9 +160,8 @@ std::vector<std::string> searchedMethods(const TuneOptions& options)
 		const MethodRow* const row = methodNamed(method);
 		if (row != nullptr && row->kind == MethodKind::volumes && !draws_volumes)
 		{
-			throw Error(ExitCode::usage, "--glsl: found " +
-											 std::string(glslTargets()[static_cast<std::size_t>(options.emit.target)]) +
-											 " with volumes, expected 330 or 430");
+			refuse("--glsl: found " + std::string(glslTargets()[static_cast<std::size_t>(options.emit.target)]) +
+				   " with volumes, expected 330 or 430");
 		}
 		if (row != nullptr ? !row->emitted : assetNamed(method) == nullptr)
 		{
@@ -192,8 +191,7 @@ void check(TuneOptions& options)
 	const bool bounded = settings.goal.max_error.has_value();
 	if (bounded == !options.budget.empty())
 	{
-		throw Error(ExitCode::usage,
-					std::string("--budget, --max-error: found ") + (bounded ? "both" : "neither") + ", expected one of them");
+		refuse(std::string("--budget, --max-error: found ") + (bounded ? "both" : "neither") + ", expected one of them");
 	}
 	if (!bounded)
 	{

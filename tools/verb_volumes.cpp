@@ -244,8 +244,8 @@ void checkShared(const VolumeSettings& settings)
 	const DropSettings& drop = settings.drop;
 	if (!drop.no_receiver && !drop.sides && !drop.inside && !drop.hidden && drop.below <= 0.0 && !settings.compensate)
 	{
-		throw Error(ExitCode::usage, "--share: found with --no-drop and without --compensate, which leave nothing to share out, "
-									 "expected one run");
+		refuse("--share: found with --no-drop and without --compensate, which leave nothing to share out, "
+			   "expected one run");
 	}
 }
 

@@ -89,8 +89,6 @@ private:
 	uint64_t m_second = 0x9e3779b97f4a7c15;
 };
 
-// Content hash of a file (content_hash.h).
-
 // Reads in blocks: a level may have gigabytes. Throws Error (file).
 std::string hashOfFile(const std::string& path);
 

@@ -41,8 +41,6 @@ template <class Number> std::optional<Number> numberFrom(std::string_view text)
 	return result.ec == std::errc{} && result.ptr == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
-// Numbers → text that reads back as the same number in every locale.
-
 // Shortest decimal: "0.1", "1e-09", "inf".
 inline std::string numberText(double value)
 {

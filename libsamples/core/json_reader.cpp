@@ -257,13 +257,7 @@ JsonValue JsonValue::item(std::string_view field, std::size_t index) const
 
 std::vector<JsonValue> JsonValue::objects(std::string_view field) const
 {
-	std::vector<JsonValue> found;
-	const std::size_t n = count(field);
-	for (std::size_t i = 0; i < n; ++i)
-	{
-		found.push_back(item(field, i));
-	}
-	return found;
+	return listOf(count(field), [&](std::size_t i) { return item(field, i); });
 }
 
 std::optional<uint64_t> JsonValue::whole(std::string_view field, uint64_t most) const
@@ -288,13 +282,7 @@ std::size_t JsonValue::indexNeeded(std::string_view field, std::size_t size) con
 
 std::vector<std::size_t> JsonValue::indices(std::string_view field, std::size_t size) const
 {
-	std::vector<std::size_t> found;
-	const std::size_t n = count(field);
-	for (std::size_t i = 0; i < n; ++i)
-	{
-		found.push_back(at(field).at(i).indexInto(size));
-	}
-	return found;
+	return listOf(count(field), [&](std::size_t i) { return at(field).at(i).indexInto(size); });
 }
 
 double JsonValue::number(std::string_view field, double otherwise) const
@@ -309,17 +297,11 @@ double JsonValue::numberNeeded(std::string_view field) const
 
 std::vector<double> JsonValue::numbers(std::string_view field, std::size_t size) const
 {
-	std::vector<double> found;
 	if (has(field) && at(field).arraySize() != size)
 	{
 		at(field).expected("an array of " + std::to_string(size) + " numbers");
 	}
-	const std::size_t n = count(field);
-	for (std::size_t i = 0; i < n; ++i)
-	{
-		found.push_back(at(field).at(i).number());
-	}
-	return found;
+	return listOf(count(field), [&](std::size_t i) { return at(field).at(i).number(); });
 }
 
 bool JsonValue::boolean(std::string_view field, bool otherwise) const
@@ -334,13 +316,7 @@ std::string JsonValue::text(std::string_view field, const std::string& otherwise
 
 std::vector<std::string> JsonValue::texts(std::string_view field) const
 {
-	std::vector<std::string> found;
-	const std::size_t n = count(field);
-	for (std::size_t i = 0; i < n; ++i)
-	{
-		found.push_back(at(field).at(i).string());
-	}
-	return found;
+	return listOf(count(field), [&](std::size_t i) { return at(field).at(i).string(); });
 }
 
 std::string JsonValue::name() const

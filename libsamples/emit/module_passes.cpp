@@ -340,11 +340,7 @@ std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleM
 	for (const ShadePass& pass : planFor(settings, method).passes)
 	{
 		const std::string call = pass.kernel.call;
-		const auto same = [&call](const ModuleEntry& entry)
-		{
-			return entry.call == call;
-		};
-		if (std::any_of(entries.begin(), entries.end(), same))
+		if (std::any_of(entries.begin(), entries.end(), [&call](const ModuleEntry& entry) { return entry.call == call; }))
 		{
 			continue;
 		}
@@ -377,11 +373,7 @@ std::vector<ModulePass> mainPasses(const ModuleSettings& settings)
 		entry = pass.of_pixel ? pass.kernel.call : entry;
 		const bool of_cell = pass.of_pixel && shade.half_resolution && pass.packing == ShadePacking::none;
 		const std::string call = pass.fills ? entry + "Full(at)" : moduleCallOf(pass) + (of_cell ? "(2 * at)" : "(at)");
-		const auto same = [&call](const ModulePass& one)
-		{
-			return one.call == call;
-		};
-		if (std::any_of(passes.begin(), passes.end(), same))
+		if (std::any_of(passes.begin(), passes.end(), [&call](const ModulePass& one) { return one.call == call; }))
 		{
 			continue;
 		}

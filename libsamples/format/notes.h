@@ -6,6 +6,7 @@
 #include "core/text.h"
 #include "pattern/quality.h"
 #include "pattern/recipe.h"
+#include "pattern/tile.h"
 
 #include <string>
 #include <vector>

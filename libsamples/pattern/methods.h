@@ -5,6 +5,7 @@
 #include "core/progress.h"
 #include "core/random.h"
 #include "pattern/cells.h"
+#include "pattern/energy.h"
 #include "pattern/layout.h"
 #include "pattern/recipe.h"
 
@@ -12,8 +13,6 @@
 
 namespace nook
 {
-
-// Progress of one start within a stage of several.
 
 // Each step of a descent counts as one item; its end counts the remaining ones, since most descents stop early.
 class StartProgress

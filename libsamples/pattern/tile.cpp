@@ -35,6 +35,37 @@ constexpr double kTransformLambda = 0.15; // with less, the scales spread so far
 constexpr double kPrefix = 0.3;           // weight of the means of 2, 4, 8, … frames relative to that of all
 constexpr int kPannedSize = 8; // panning brings distant pixels together; in a large tile that involves every pair of variants
 
+std::string tileCommandOn(const TileRecipe& recipe, const std::string& base)
+{
+	const TileRecipe plain;
+	std::string command = "nook tile " + base + " --size " + std::to_string(recipe.size);
+	if (recipe.kind != plain.kind)
+	{
+		command += " --kind " + std::string(nameOf(recipe.kind));
+	}
+	if (recipe.lambda != plain.lambda)
+	{
+		command += " --lambda " + numberText(recipe.lambda);
+	}
+	for (const TileFilter& filter : recipe.filters)
+	{
+		command += " --filter " + filter.name + (filter.share != 1.0 ? "@" + numberText(filter.share) : "");
+	}
+	command += recipe.robust ? " --robust" : "";
+	command += recipe.frames > 1 ? " --frames " + std::to_string(recipe.frames) + " --ema " + numberText(recipe.ema) : "";
+	command += recipe.moves ? " --moves" : "";
+	command += recipe.progressive ? " --progressive" : "";
+	if (recipe.starts != plain.starts)
+	{
+		command += " --starts " + std::to_string(recipe.starts);
+	}
+	if (recipe.seed != plain.seed)
+	{
+		command += " --seed " + std::to_string(recipe.seed);
+	}
+	return command;
+}
+
 } // namespace
 
 double lambdaOf(const TileRecipe& recipe)
@@ -269,42 +300,6 @@ void checkTileRecipe(const TileRecipe& recipe, Domain domain)
 						": rotations about the view axis are for disk and hemisphere; expected points or random");
 	}
 }
-
-namespace
-{
-
-std::string tileCommandOn(const TileRecipe& recipe, const std::string& base)
-{
-	const TileRecipe plain;
-	std::string command = "nook tile " + base + " --size " + std::to_string(recipe.size);
-	if (recipe.kind != plain.kind)
-	{
-		command += " --kind " + std::string(nameOf(recipe.kind));
-	}
-	if (recipe.lambda != plain.lambda)
-	{
-		command += " --lambda " + numberText(recipe.lambda);
-	}
-	for (const TileFilter& filter : recipe.filters)
-	{
-		command += " --filter " + filter.name + (filter.share != 1.0 ? "@" + numberText(filter.share) : "");
-	}
-	command += recipe.robust ? " --robust" : "";
-	command += recipe.frames > 1 ? " --frames " + std::to_string(recipe.frames) + " --ema " + numberText(recipe.ema) : "";
-	command += recipe.moves ? " --moves" : "";
-	command += recipe.progressive ? " --progressive" : "";
-	if (recipe.starts != plain.starts)
-	{
-		command += " --starts " + std::to_string(recipe.starts);
-	}
-	if (recipe.seed != plain.seed)
-	{
-		command += " --seed " + std::to_string(recipe.seed);
-	}
-	return command;
-}
-
-} // namespace
 
 std::string tileCommand(const TileRecipe& recipe, const std::string& pattern_file)
 {

@@ -544,9 +544,6 @@ VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::spa
 		{
 			result.greatest = difference;
 			result.worst_position = receivers[i].position;
-			result.worst_normal = receivers[i].normal;
-			result.worst_all = before[i];
-			result.worst_kept = after[i];
 		}
 	}
 	const double count = std::max(1.0, static_cast<double>(receivers.size()));

@@ -2,6 +2,7 @@
 // Hand-made patterns and tiles for the tests of emission: independent of generators, with awkward bits.
 #pragma once
 
+#include "core/file.h"
 #include "core/random.h"
 #include "core/round.h"
 #include "format/pattern_file.h"
@@ -50,6 +51,16 @@ inline Quality awkwardQuality()
 	quality.cliff = 0.0488;
 	quality.energy = std::numeric_limits<double>::infinity();
 	return quality;
+}
+
+inline void emitPattern(const std::string& path, const Pattern& pattern, const Quality& quality, const EmitContext& context)
+{
+	writeFile(path, patternBytes(formatOf(path, patternFormats()), pattern, nullptr, quality, context));
+}
+
+inline void emitTile(const std::string& path, const PatternTile& tile, const EmitContext& context)
+{
+	writeFile(path, tileBytes(formatOf(path, tileFormats()), tile, nullptr, {}, context));
 }
 
 inline EmitContext contextOf(const std::string& command)

@@ -225,7 +225,7 @@ TEST_CASE("textures: EXR holds the floats, PNG stays within its stated error", "
 		const TemporaryFolder folder;
 		for (const char* name : {"t.exr", "t.png"})
 		{
-			emitTile(folder / name, tile, nullptr, {}, contextOf("nook tile"));
+			emitTile(folder / name, tile, contextOf("nook tile"));
 			const Image image = readImage(folder / name);
 			const bool exr = std::string(name) == "t.exr";
 			REQUIRE(image.values.size() == texture.rgba.size());
@@ -351,7 +351,7 @@ TEST_CASE("writing: a failure leaves no file behind", "[emit]")
 	{
 		try
 		{
-			emitPattern(path, pattern, nullptr, {}, contextOf("nook"));
+			emitPattern(path, pattern, {}, contextOf("nook"));
 		}
 		catch (const Error& error)
 		{

@@ -102,8 +102,8 @@ TEST_CASE("source files: a comment cannot be left by the text in it", "[emit]")
 TEST_CASE("headers: compile alone as C11 and C++17 with g++ and clang++", "[emit]")
 {
 	const TemporaryFolder folder;
-	emitPattern(folder / "p.h", scatteredPattern(Domain::ball, 64), nullptr, awkwardQuality(), contextOf("nook pattern"));
-	emitTile(folder / "t.h", scatteredTile(Domain::disk, 4, 5, true), nullptr, {}, contextOf("nook tile"));
+	emitPattern(folder / "p.h", scatteredPattern(Domain::ball, 64), awkwardQuality(), contextOf("nook pattern"));
+	emitTile(folder / "t.h", scatteredTile(Domain::disk, 4, 5, true), contextOf("nook tile"));
 	writeFile(
 		folder / "both.c",
 		"#include \"p.h\"\n#include \"t.h\"\n#include \"p.h\"\n"
@@ -138,8 +138,8 @@ TEST_CASE("shaders: glslangValidator takes them alone and included", "[emit]")
 	const TemporaryFolder folder;
 	const Pattern pattern = scatteredPattern(Domain::sphere, 64);
 	const PatternTile tile = scatteredTile(Domain::disk, 4, 5, true);
-	emitPattern(folder / "p.glsl", pattern, nullptr, awkwardQuality(), contextOf("nook pattern"));
-	emitTile(folder / "t.glsl", tile, nullptr, {}, contextOf("nook tile"));
+	emitPattern(folder / "p.glsl", pattern, awkwardQuality(), contextOf("nook pattern"));
+	emitTile(folder / "t.glsl", tile, contextOf("nook tile"));
 	const std::string both = readFile(folder / "p.glsl") + readFile(folder / "t.glsl") + readFile(folder / "p.glsl");
 	const std::string sum =
 		"nook_sphere64_points[63] + nook_disk5_tile4_points[NOOK_DISK5_TILE4_TOTAL - 1] + nook_disk5_tile4_transforms[15]";

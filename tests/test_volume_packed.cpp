@@ -61,7 +61,7 @@ TEST_CASE("volume: clusters cover all polygons, hold what they reach, and are no
 		REQUIRE((cluster.polygon_count >= 1 && cluster.polygon_count <= 128));
 		for (; polygon < cluster.first_polygon + cluster.polygon_count; ++polygon)
 		{
-			const VolumeBox box = volumeBox(after, polygon);
+			const Bounds box = volumeBox(after, polygon);
 			REQUIRE(glm::all(glm::lessThanEqual(cluster.least, box.least)));
 			REQUIRE(glm::all(glm::greaterThanEqual(cluster.most, box.most)));
 		}

@@ -44,7 +44,6 @@ struct Call
 	std::vector<ReferencePoint> points;
 	std::map<std::string, Image> images; // by the names that options have for them
 	std::vector<uint8_t> counted;        // pixels of a comparison
-	bool per_vertex = false;             // its arrays of floats are per vertex of the level
 
 	// The results.
 	std::vector<MadeArray> arrays;

@@ -15,15 +15,14 @@
 #include "version.h"
 
 #include <algorithm>
+#include <any>
 #include <array>
 #include <atomic>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <map>
 #include <mutex>
 #include <new>
-#include <variant>
 
 namespace nook
 {
@@ -89,12 +88,13 @@ public:
 	{
 		const std::lock_guard lock(m_mutex);
 		const auto found = m_objects.find(handle);
-		if (found == m_objects.end() || !std::holds_alternative<std::shared_ptr<Data>>(found->second))
+		const auto* const data = found != m_objects.end() ? std::any_cast<std::shared_ptr<Data>>(&found->second) : nullptr;
+		if (data == nullptr)
 		{
 			refuse(std::string(what) + ": found " + (handle == nullptr ? "null" : "no handle that is in use") + ", expected " +
 				   what);
 		}
-		return std::get<std::shared_ptr<Data>>(found->second);
+		return *data;
 	}
 	template <class Handle, class Data> void add(Handle** to, std::shared_ptr<Data> data)
 	{
@@ -106,20 +106,14 @@ public:
 	}
 	void remove(const void* handle) noexcept
 	{
-		Object last; // destroyed after the lock
+		std::map<const void*, std::any>::node_type last; // destroyed after the lock
 		const std::lock_guard lock(m_mutex);
-		if (const auto found = m_objects.find(handle); found != m_objects.end())
-		{
-			last = std::move(found->second);
-			m_objects.erase(found);
-		}
+		last = m_objects.extract(handle);
 	}
 
 private:
-	using Object =
-		std::variant<std::monostate, std::shared_ptr<OptionsData>, std::shared_ptr<LevelData>, std::shared_ptr<ResultData>>;
 	std::mutex m_mutex;
-	std::map<const void*, Object> m_objects;
+	std::map<const void*, std::any> m_objects; // shared pointers
 	uintptr_t m_last = 4096;
 };
 
@@ -367,9 +361,8 @@ struct GivenOptions
 	}
 
 	// Throws Error (usage) for options that `app` does not have, too.
-	void parse(CLI::App& app, const std::vector<std::string>& more) const
+	void parse(CLI::App& app, std::vector<std::string> all) const
 	{
-		std::vector<std::string> all(more.rbegin(), more.rend()); // the last first, as CLI11 takes them
 		for (const std::string& word : words)
 		{
 			const std::string name = word.substr(2, word.find('=') - 2);
@@ -378,10 +371,11 @@ struct GivenOptions
 			{
 				refuseValue("option", name, "one that this call has");
 			}
-			all.insert(all.begin(), word);
+			all.push_back(word);
 		}
 		try
 		{
+			std::reverse(all.begin(), all.end()); // the last first, as CLI11 takes them
 			app.parse(std::move(all));
 		}
 		catch (const CLI::ParseError& error)
@@ -399,11 +393,9 @@ struct GivenOptions
 // Values per vertex in the order of the caller's vertices; NaN for those without a triangle.
 void orderAsGiven(const LevelData& level, std::vector<MadeArray>& arrays)
 {
-	const auto is_split = [](const MadeArray& array)
-	{
-		return array.name == "triangles";
-	};
-	if (level.given == level.vertices.size() || std::any_of(arrays.begin(), arrays.end(), is_split))
+	const bool is_split =
+		std::any_of(arrays.begin(), arrays.end(), [](const MadeArray& array) { return array.name == "triangles"; });
+	if (level.given == level.vertices.size() || is_split)
 	{
 		return;
 	}
@@ -425,89 +417,90 @@ void orderAsGiven(const LevelData& level, std::vector<MadeArray>& arrays)
 	}
 }
 
-// Runs a verb whose positional arguments these are, and gives its result.
-void runCalled(Verb (*add)(CLI::App& app), Call& call, const GivenOptions& options, std::vector<std::string> arguments,
-			   const LevelData* level, nook_result** result)
+// A verb to run: what it works on, and its words before options.
+struct Prepared
+{
+	Call call;
+	std::vector<std::string> words;
+	std::shared_ptr<const LevelData> level;
+	bool per_vertex = false; // its arrays of floats are per vertex of the level
+
+	void take(const nook_level* handle, bool gives_vertices = false)
+	{
+		per_vertex = gives_vertices;
+		level = handles().find<LevelData>(handle, "level");
+		call.level = level->loaded;
+		words.push_back(level->name.empty() ? "arrays" : level->name);
+		words.insert(words.end(), level->words.begin(), level->words.end());
+	}
+};
+
+void runCalled(Verb (*add)(CLI::App& app), Prepared& prepared, const GivenOptions& options, nook_result** result)
 {
 	const Folder folder = temporaryFolder();
 	const std::string facts = *folder + "/facts";
-	arguments.push_back("--json=" + facts);
+	prepared.words.push_back("--json=" + facts);
 	for (const std::string& ending : options.endings)
 	{
 		if (ending.size() < 2 || ending[0] != '.' || ending.find('/') != std::string::npos)
 		{
 			refuseValue("output", ending, "the ending of a file: .json");
 		}
-		arguments.push_back("--output=" + *folder + "/result" + ending);
+		prepared.words.push_back("--output=" + *folder + "/result" + ending);
 	}
 	CLI::App app;
 	const Verb verb = add(app);
-	const auto data = std::make_shared<ResultData>();
-	const auto take = [&]
-	{
-		data->facts = readFile(facts);
-		for (const std::string& ending : options.endings)
-		{
-			data->files[ending] = readFile(*folder + "/result" + ending);
-		}
-		data->arrays = std::move(call.arrays);
-		if (call.per_vertex)
-		{
-			orderAsGiven(*level, data->arrays);
-		}
-		for (const std::string& warning : call.warnings)
-		{
-			data->warnings += (data->warnings.empty() ? "" : "\n") + warning;
-		}
-		handles().add(result, data);
-	};
+	std::exception_ptr difference; // which leaves a result
 	try
 	{
-		call.progress = options.progress;
-		const Working working(call);
-		options.parse(*verb.app, arguments);
+		prepared.call.progress = options.progress;
+		const Working working(prepared.call);
+		options.parse(*verb.app, prepared.words);
 		VerbProgress progress;
 		verb.run(progress);
 	}
 	catch (const Error& error)
 	{
-		if (error.code() == ExitCode::difference)
+		if (error.code() != ExitCode::difference)
 		{
-			take();
+			throw;
 		}
-		throw;
+		difference = std::current_exception();
 	}
-	take();
+	const auto data = std::make_shared<ResultData>();
+	data->facts = readFile(facts);
+	for (const std::string& ending : options.endings)
+	{
+		data->files[ending] = readFile(*folder + "/result" + ending);
+	}
+	data->arrays = std::move(prepared.call.arrays);
+	if (prepared.per_vertex)
+	{
+		orderAsGiven(*prepared.level, data->arrays);
+	}
+	for (const std::string& warning : prepared.call.warnings)
+	{
+		data->warnings += (data->warnings.empty() ? "" : "\n") + warning;
+	}
+	handles().add(result, data);
+	if (difference)
+	{
+		std::rethrow_exception(difference);
+	}
 }
 
-nook_status called(Verb (*add)(CLI::App& app), const nook_options* options, nook_result** result) noexcept
-{
-	return guarded(
-		[&]
-		{
-			require(result, "result");
-			Call call;
-			runCalled(add, call, GivenOptions(options), {}, nullptr, result);
-		});
-}
-
-// `prepare` gets the call and returns further words.
+// Runs a verb and gives its result. `prepare` takes the caller's arrays and level.
 template <class Prepare>
-nook_status calledOf(Verb (*add)(CLI::App& app), const nook_level* level, const nook_options* options, nook_result** result,
-					 const Prepare& prepare) noexcept
+nook_status called(Verb (*add)(CLI::App& app), const nook_options* options, nook_result** result, const Prepare& prepare) noexcept
 {
-	return guarded(
-		[&]
-		{
-			require(result, "result");
-			const auto data = handles().find<LevelData>(level, "level");
-			Call call;
-			call.level = data->loaded;
-			std::vector<std::string> arguments{data->name.empty() ? "arrays" : data->name};
-			arguments.insert(arguments.end(), data->words.begin(), data->words.end());
-			prepare(call, arguments);
-			runCalled(add, call, GivenOptions(options), arguments, data.get(), result);
-		});
+	const auto body = [&]
+	{
+		require(result, "result");
+		Prepared prepared;
+		prepare(prepared);
+		runCalled(add, prepared, GivenOptions(options), result);
+	};
+	return guarded(body);
 }
 
 void setOption(nook_options* options, const char* name, const std::string& value)
@@ -533,24 +526,16 @@ Level levelOf(const nook_array* positions, const nook_array* triangles, const no
 			   std::to_string(kMaxTriangles));
 	}
 	level.triangles = corners.vectors<glm::uvec3>(0.0, static_cast<double>(vertices - 1));
-	level.normals.resize(vertices, glm::vec3(0.0F));
-	if (normals != nullptr)
+	level.normals = normals != nullptr ? GivenArray(normals, "normals", {vertices, 3}).vectors<glm::vec3>(-1e15, 1e15)
+									   : std::vector<glm::vec3>(vertices, glm::vec3(0.0F));
+	for (glm::vec3& normal : level.normals)
 	{
-		level.normals = GivenArray(normals, "normals", {vertices, 3}).vectors<glm::vec3>(-1e15, 1e15);
-		for (glm::vec3& normal : level.normals)
-		{
-			const double length = glm::length(glm::dvec3(normal));
-			normal = length > 0.0 ? glm::vec3(glm::dvec3(normal) / length) : normal;
-		}
+		const double length = glm::length(glm::dvec3(normal));
+		normal = length > 0.0 ? glm::vec3(glm::dvec3(normal) / length) : normal;
 	}
-	level.uvs.resize(vertices, glm::vec2(0.0F));
-	if (uvs != nullptr)
-	{
-		level.uvs = GivenArray(uvs, "uvs", {vertices, 2}).vectors<glm::vec2>(-1e9, 1e9);
-	}
-	Material material;
-	material.two_sided = two_sided;
-	level.material_list.push_back(material);
+	level.uvs = uvs != nullptr ? GivenArray(uvs, "uvs", {vertices, 2}).vectors<glm::vec2>(-1e9, 1e9)
+							   : std::vector<glm::vec2>(vertices, glm::vec2(0.0F));
+	level.material_list.emplace_back().two_sided = two_sided;
 	level.materials.resize(level.triangles.size(), 0);
 	level.meshes.push_back({name, 0, level.triangles.size()});
 	return level;
@@ -564,16 +549,16 @@ using namespace nook;
 
 nook_status nook_require(uint32_t abi)
 {
-	const nook_status status = guarded(
-		[&]
+	const auto body = [abi]
+	{
+		if (abi != NOOK_ABI)
 		{
-			if (abi != NOOK_ABI)
-			{
-				refuse("nook " NOOK_VERSION ": found an interface of version " + std::to_string(NOOK_ABI) + ", expected " +
-					   std::to_string(abi));
-			}
-		});
-	return status == NOOK_OK ? NOOK_OK : NOOK_WRONG_VERSION;
+			throw Error(static_cast<ExitCode>(NOOK_WRONG_VERSION), "nook " NOOK_VERSION ": found an interface of version " +
+																	   std::to_string(NOOK_ABI) + ", expected " +
+																	   std::to_string(abi));
+		}
+	};
+	return guarded(body);
 }
 
 const char* nook_version()
@@ -588,12 +573,12 @@ const char* nook_error()
 
 nook_status nook_options_create(nook_options** options)
 {
-	return guarded(
-		[&]
-		{
-			require(options, "options");
-			handles().add(options, std::make_shared<OptionsData>());
-		});
+	const auto body = [&]
+	{
+		require(options, "options");
+		handles().add(options, std::make_shared<OptionsData>());
+	};
+	return guarded(body);
 }
 
 void nook_options_destroy(nook_options* options)
@@ -603,12 +588,12 @@ void nook_options_destroy(nook_options* options)
 
 nook_status nook_options_set(nook_options* options, const char* name, const char* value)
 {
-	return guarded(
-		[&]
-		{
-			require(value, "value");
-			setOption(options, name, value);
-		});
+	const auto body = [&]
+	{
+		require(value, "value");
+		setOption(options, name, value);
+	};
+	return guarded(body);
 }
 
 nook_status nook_options_number(nook_options* options, const char* name, double value)
@@ -618,116 +603,115 @@ nook_status nook_options_number(nook_options* options, const char* name, double 
 
 nook_status nook_options_file(nook_options* options, const char* name, const char* file_name, const void* bytes, size_t size)
 {
-	return guarded(
-		[&]
+	const auto body = [&]
+	{
+		require(file_name, "file_name");
+		require(bytes, "bytes");
+		const std::string file = file_name;
+		if (file.empty() || file[0] == '.' || file[0] == '-' || file.find_first_of("/,") != std::string::npos)
 		{
-			require(file_name, "file_name");
-			require(bytes, "bytes");
-			const std::string file = file_name;
-			if (file.empty() || file[0] == '.' || file[0] == '-' || file.find_first_of("/,") != std::string::npos)
-			{
-				refuseValue("file_name", file, "a name without folder and comma: disk.json");
-			}
-			if (size > kMaxFileBytes)
-			{
-				refuse("size: found " + std::to_string(size) + " bytes, expected at most " + std::to_string(kMaxFileBytes));
-			}
-			const Folder folder = temporaryFolder();
-			const std::string path = *folder + "/" + file;
-			writeFile(path, {static_cast<const char*>(bytes), size});
-			const auto data = handles().find<OptionsData>(options, "options");
-			setOption(options, name, path);
-			const std::lock_guard lock(data->mutex);
-			data->folders.push_back(folder);
-		});
+			refuseValue("file_name", file, "a name without folder and comma: disk.json");
+		}
+		if (size > kMaxFileBytes)
+		{
+			refuse("size: found " + std::to_string(size) + " bytes, expected at most " + std::to_string(kMaxFileBytes));
+		}
+		const Folder folder = temporaryFolder();
+		const std::string path = *folder + "/" + file;
+		writeFile(path, {static_cast<const char*>(bytes), size});
+		const auto data = handles().find<OptionsData>(options, "options");
+		setOption(options, name, path);
+		const std::lock_guard lock(data->mutex);
+		data->folders.push_back(folder);
+	};
+	return guarded(body);
 }
 
 nook_status nook_options_progress(nook_options* options, nook_progress progress, void* user)
 {
-	return guarded(
-		[&]
-		{
-			const auto data = handles().find<OptionsData>(options, "options");
-			const std::lock_guard lock(data->mutex);
-			data->progress = progress;
-			data->user = user;
-		});
+	const auto body = [&]
+	{
+		const auto data = handles().find<OptionsData>(options, "options");
+		const std::lock_guard lock(data->mutex);
+		data->progress = progress;
+		data->user = user;
+	};
+	return guarded(body);
 }
 
 nook_status nook_level_create(const nook_array* positions, const nook_array* triangles, const nook_array* normals,
 							  const nook_array* uvs, const nook_options* options, nook_level** level)
 {
-	return guarded(
-		[&]
-		{
-			require(level, "level");
-			const GivenOptions given(options);
-			CLI::App app;
-			std::string name = "arrays";
-			bool strict = false;
-			bool two_sided = false;
-			int threads = 0;
-			addOptions(app, {{"--name", takesText(name, "NAME"), "Of the level, for files made of it"},
-							 {"--strict", takesFlag(strict), "Anything odd that is found in the level is an error"},
-							 {"--two-sided", takesFlag(two_sided), "Triangles are seen from both sides"},
-							 threadsRow(threads)});
-			given.parse(app, {});
-			Level arrays = levelOf(positions, triangles, normals, uvs, name, two_sided);
-			const auto data = std::make_shared<LevelData>();
-			data->given = arrays.positions.size();
-			const RunSettings run{threads > 0 ? threads : availableThreads(), given.progress, nullptr};
-			data->loaded = std::make_shared<LoadedLevel>(loadLevel(std::move(arrays), strict, data->vertices, run));
-			handles().add(level, data);
-		});
+	const auto body = [&]
+	{
+		require(level, "level");
+		const GivenOptions given(options);
+		CLI::App app;
+		std::string name = "arrays";
+		bool strict = false;
+		bool two_sided = false;
+		int threads = availableThreads();
+		addOptions(app, {{"--name", takesText(name, "NAME"), "Of the level, for files made of it"},
+						 {"--strict", takesFlag(strict), "Anything odd that is found in the level is an error"},
+						 {"--two-sided", takesFlag(two_sided), "Triangles are seen from both sides"},
+						 threadsRow(threads)});
+		given.parse(app, {});
+		Level arrays = levelOf(positions, triangles, normals, uvs, name, two_sided);
+		const auto data = std::make_shared<LevelData>();
+		data->given = arrays.positions.size();
+		data->loaded =
+			std::make_shared<LoadedLevel>(loadLevel(std::move(arrays), strict, data->vertices, {threads, given.progress, nullptr}));
+		handles().add(level, data);
+	};
+	return guarded(body);
 }
 
 nook_status nook_level_load(const char* path, const nook_options* options, nook_level** level)
 {
-	return guarded(
-		[&]
-		{
-			require(path, "path");
-			require(level, "level");
-			const GivenOptions given(options);
-			CLI::App app;
-			LoadSettings load;
-			int threads = 0;
-			addLoadOptions(app, load);
-			addOptions(app, {threadsRow(threads)});
-			given.parse(app, {});
-			const auto data = std::make_shared<LevelData>();
-			data->name = path;
-			std::copy_if(given.words.begin(), given.words.end(), std::back_inserter(data->words),
-						 [](const std::string& word) { return !word.starts_with("--threads="); });
-			const RunSettings run{threads > 0 ? threads : availableThreads(), given.progress, nullptr};
-			data->loaded = std::make_shared<LoadedLevel>(loadLevel(data->name, load, run));
-			handles().add(level, data);
-		});
+	const auto body = [&]
+	{
+		require(path, "path");
+		require(level, "level");
+		const GivenOptions given(options);
+		CLI::App app;
+		LoadSettings load;
+		int threads = availableThreads();
+		addLoadOptions(app, load);
+		addOptions(app, {threadsRow(threads)});
+		given.parse(app, {});
+		const auto data = std::make_shared<LevelData>();
+		data->name = path;
+		data->words = given.words;
+		std::erase_if(data->words, [](const std::string& word) { return word.starts_with("--threads="); });
+		data->loaded = std::make_shared<LoadedLevel>(loadLevel(data->name, load, {threads, given.progress, nullptr}));
+		handles().add(level, data);
+	};
+	return guarded(body);
 }
 
 nook_status nook_level_describe(const nook_level* level, nook_result** result)
 {
-	return guarded(
-		[&]
+	const auto body = [&]
+	{
+		require(result, "result");
+		const auto loaded = handles().find<LevelData>(level, "level")->loaded;
+		const Level& described = loaded->level;
+		Call call;
 		{
-			require(result, "result");
-			const auto loaded = handles().find<LevelData>(level, "level")->loaded;
-			const Level& described = loaded->level;
-			Call call;
-			{
-				const Working working(call);
-				give<double>("positions", described.positions, {described.positions.size(), 3});
-				give<uint32_t>("triangles", described.triangles, {described.triangles.size(), 3});
-				give<float>("normals", described.normals, {described.normals.size(), 3});
-				give<float>("uvs", described.uvs, {described.uvs.size(), 2});
-			}
-			Facts facts = verbFacts("level");
-			addLevelFacts(facts, *loaded);
-			const auto data = std::make_shared<ResultData>();
-			data->arrays = std::move(call.arrays);
-			data->facts = facts.json();
-			handles().add(result, data);
-		});
+			const Working working(call);
+			give<double>("positions", described.positions, {described.positions.size(), 3});
+			give<uint32_t>("triangles", described.triangles, {described.triangles.size(), 3});
+			give<float>("normals", described.normals, {described.normals.size(), 3});
+			give<float>("uvs", described.uvs, {described.uvs.size(), 2});
+		}
+		Facts facts = verbFacts("level");
+		addLevelFacts(facts, *loaded);
+		const auto data = std::make_shared<ResultData>();
+		data->arrays = std::move(call.arrays);
+		data->facts = facts.json();
+		handles().add(result, data);
+	};
+	return guarded(body);
 }
 
 void nook_level_destroy(nook_level* level)
@@ -737,189 +721,177 @@ void nook_level_destroy(nook_level* level)
 
 nook_status nook_run_pattern(const nook_options* options, nook_result** result)
 {
-	return called(addPatternVerb, options, result);
+	return called(addPatternVerb, options, result, [](Prepared&) {});
 }
 
 nook_status nook_run_tile(const nook_options* options, nook_result** result)
 {
-	return called(addTileVerb, options, result);
+	return called(addTileVerb, options, result, [](Prepared&) {});
 }
 
 nook_status nook_run_emit(const nook_options* options, nook_result** result)
 {
-	return called(addEmitVerb, options, result);
+	return called(addEmitVerb, options, result, [](Prepared&) {});
 }
 
 nook_status nook_run_bake(const nook_level* level, const nook_options* options, nook_result** result)
 {
-	return calledOf(addBakeVerb, level, options, result, [](Call& call, std::vector<std::string>&) { call.per_vertex = true; });
+	return called(addBakeVerb, options, result, [level](Prepared& prepared) { prepared.take(level, true); });
 }
 
 nook_status nook_run_volumes(const nook_level* level, const nook_options* options, nook_result** result)
 {
-	return calledOf(addVolumesVerb, level, options, result, [](Call&, std::vector<std::string>&) {});
+	return called(addVolumesVerb, options, result, [level](Prepared& prepared) { prepared.take(level); });
 }
 
 nook_status nook_run_gbuffer(const nook_level* level, const nook_options* options, nook_result** result)
 {
-	return calledOf(addGBufferVerb, level, options, result, [](Call&, std::vector<std::string>&) {});
+	return called(addGBufferVerb, options, result, [level](Prepared& prepared) { prepared.take(level); });
 }
 
 nook_status nook_run_visibility(const nook_level* level, const nook_array* positions, const nook_array* normals,
 								const nook_options* options, nook_result** result)
 {
-	return calledOf(
-		addReferenceVerb, level, options, result,
-		[&](Call& call, std::vector<std::string>& arguments)
+	const auto prepare = [&](Prepared& prepared)
+	{
+		prepared.take(level);
+		prepared.words.emplace_back("--points=points");
+		using Vectors = std::vector<glm::dvec3>;
+		const Vectors at = GivenArray(positions, "positions", {kAny, 3}).vectors<glm::dvec3>(-kFarthest_m, kFarthest_m);
+		const Vectors about = GivenArray(normals, "normals", {at.size(), 3}).vectors<glm::dvec3>(-1e15, 1e15);
+		for (std::size_t i = 0; i < at.size(); ++i)
 		{
-			const GivenArray at(positions, "positions", {kAny, 3});
-			const GivenArray about(normals, "normals", {at.along(0), 3});
-			call.points.resize(at.along(0));
-			at.visit(-kFarthest_m, kFarthest_m,
-					 [&](uint64_t item, double number) { call.points[item / 3].position[static_cast<int>(item % 3)] = number; });
-			about.visit(-1e15, 1e15,
-						[&](uint64_t item, double number) { call.points[item / 3].normal[static_cast<int>(item % 3)] = number; });
-			for (ReferencePoint& point : call.points)
+			const std::optional<ReferencePoint> point = pointOf(at[i], about[i]);
+			if (!point)
 			{
-				const std::optional<ReferencePoint> good = pointOf(point.position, point.normal);
-				if (!good)
-				{
-					throw Error(ExitCode::invalid_input, "normals: row " + std::to_string(&point - call.points.data()) +
-															 ": found no direction, expected a vector that is not 0");
-				}
-				point = *good;
+				throw Error(ExitCode::invalid_input,
+							"normals: row " + std::to_string(i) + ": found no direction, expected a vector that is not 0");
 			}
-			arguments.emplace_back("--points=points");
-		});
+			prepared.call.points.push_back(*point);
+		}
+	};
+	return called(addReferenceVerb, options, result, prepare);
 }
 
 nook_status nook_run_shade(const nook_array* depth, const nook_array* normals, const nook_array* projection,
 						   const nook_array* world_to_camera, const nook_options* options, nook_result** result)
 {
-	return guarded(
-		[&]
+	const auto prepare = [&](Prepared& prepared)
+	{
+		Image image = imageOf(depth, "depth", "Z", kNoLimit);
+		if (normals != nullptr)
 		{
-			require(result, "result");
-			Image image = imageOf(depth, "depth", "Z", kNoLimit);
-			if (normals != nullptr)
+			const GivenArray given(normals, "normals",
+								   {static_cast<uint64_t>(image.height_px), static_cast<uint64_t>(image.width_px), 3});
+			image.channels = {"Z", "N.X", "N.Y", "N.Z"};
+			std::vector<float> values;
+			for (const glm::vec3& normal : given.vectors<glm::vec3>(-kMostFloat, kNoLimit))
 			{
-				const GivenArray given(normals, "normals",
-									   {static_cast<uint64_t>(image.height_px), static_cast<uint64_t>(image.width_px), 3});
-				image.channels = {"Z", "N.X", "N.Y", "N.Z"};
-				std::vector<float> values(4 * image.values.size());
-				given.visit(-kMostFloat, kNoLimit,
-							[&values](uint64_t item, double number)
-							{ values[item / 3 * 4 + 1 + item % 3] = static_cast<float>(number); });
-				for (std::size_t i = 0; i < image.values.size(); ++i)
-				{
-					values[4 * i] = image.values[i];
-				}
-				image.values = std::move(values);
+				values.insert(values.end(), {image.values[values.size() / 4], normal.x, normal.y, normal.z});
 			}
-			std::vector<std::string> arguments{"arrays"};
-			for (const auto& [matrix, name] : {std::pair(projection, "projection"), {world_to_camera, "world-to-camera"}})
+			image.values = std::move(values);
+		}
+		prepared.call.images.emplace("arrays", std::move(image));
+		prepared.words = {"arrays"};
+		for (const auto& [matrix, name] : {std::pair(projection, "projection"), {world_to_camera, "world-to-camera"}})
+		{
+			if (matrix != nullptr)
 			{
-				if (matrix != nullptr)
-				{
-					arguments.push_back("--" + std::string(name) + "=" + matrixText(matrix, name));
-				}
+				prepared.words.push_back("--" + std::string(name) + "=" + matrixText(matrix, name));
 			}
-			Call call;
-			call.images.emplace("arrays", std::move(image));
-			runCalled(addShadeVerb, call, GivenOptions(options), arguments, nullptr, result);
-		});
+		}
+	};
+	return called(addShadeVerb, options, result, prepare);
 }
 
 nook_status nook_run_compare(const nook_array* test, const nook_array* reference, const nook_array* mask,
 							 const nook_options* options, nook_result** result)
 {
-	return guarded(
-		[&]
+	const auto prepare = [&](Prepared& prepared)
+	{
+		Call& call = prepared.call;
+		const Image& known =
+			call.images.emplace("reference", imageOf(reference, "reference", "visibility", kMostFloat)).first->second;
+		call.images.emplace("test", imageOf(test, "test", "visibility", kMostFloat));
+		prepared.words = {"test", "reference"};
+		if (mask != nullptr)
 		{
-			require(result, "result");
-			Call call;
-			const Image& known =
-				call.images.emplace("reference", imageOf(reference, "reference", "visibility", kMostFloat)).first->second;
-			call.images.emplace("test", imageOf(test, "test", "visibility", kMostFloat));
-			if (mask != nullptr)
+			GivenArray(mask, "mask", {static_cast<uint64_t>(known.height_px), static_cast<uint64_t>(known.width_px)})
+				.visit(-kMostFloat, kMostFloat, [&](uint64_t, double value) { call.counted.push_back(value != 0.0 ? 1 : 0); });
+			if (std::count(call.counted.begin(), call.counted.end(), 1) == 0)
 			{
-				GivenArray(mask, "mask", {static_cast<uint64_t>(known.height_px), static_cast<uint64_t>(known.width_px)})
-					.visit(-kMostFloat, kMostFloat, [&](uint64_t, double value) { call.counted.push_back(value != 0.0 ? 1 : 0); });
-				if (std::count(call.counted.begin(), call.counted.end(), 1) == 0)
-				{
-					throw Error(ExitCode::invalid_input, "mask: found zeros alone, expected a pixel that counts");
-				}
+				throw Error(ExitCode::invalid_input, "mask: found zeros alone, expected a pixel that counts");
 			}
-			runCalled(addCompareVerb, call, GivenOptions(options), {"test", "reference"}, nullptr, result);
-		});
+		}
+	};
+	return called(addCompareVerb, options, result, prepare);
 }
 
 nook_status nook_result_array(const nook_result* result, const char* name, nook_array* array)
 {
-	return guarded(
-		[&]
+	const auto body = [&]
+	{
+		require(name, "name");
+		require(array, "array");
+		const auto data = handles().find<ResultData>(result, "result");
+		const auto found =
+			std::find_if(data->arrays.begin(), data->arrays.end(), [name](const MadeArray& made) { return made.name == name; });
+		if (found == data->arrays.end())
 		{
-			require(name, "name");
-			require(array, "array");
-			const auto data = handles().find<ResultData>(result, "result");
-			const auto found =
-				std::find_if(data->arrays.begin(), data->arrays.end(), [name](const MadeArray& made) { return made.name == name; });
-			if (found == data->arrays.end())
-			{
-				refuseValue("array", name, "one that this result has (nook_result_name)");
-			}
-			nook_array given{found->data.get(), found->type, static_cast<int32_t>(found->shape.size()), {}};
-			std::copy(found->shape.begin(), found->shape.end(), given.shape);
-			*array = given;
-		});
+			refuseValue("array", name, "one that this result has (nook_result_name)");
+		}
+		*array = {found->data.get(), found->type, static_cast<int32_t>(found->shape.size()), {}};
+		std::copy(found->shape.begin(), found->shape.end(), array->shape);
+	};
+	return guarded(body);
 }
 
 const char* nook_result_name(const nook_result* result, size_t index)
 {
 	const char* name = nullptr;
-	guarded(
-		[&]
-		{
-			const auto data = handles().find<ResultData>(result, "result");
-			name = index < data->arrays.size() ? data->arrays[index].name.c_str() : nullptr;
-		});
+	const auto body = [&]
+	{
+		const auto data = handles().find<ResultData>(result, "result");
+		name = index < data->arrays.size() ? data->arrays[index].name.c_str() : nullptr;
+	};
+	guarded(body);
 	return name;
 }
 
 nook_status nook_result_file(const nook_result* result, const char* ending, const char** bytes, size_t* size)
 {
-	return guarded(
-		[&]
+	const auto body = [&]
+	{
+		require(ending, "ending");
+		require(bytes, "bytes");
+		require(size, "size");
+		const auto data = handles().find<ResultData>(result, "result");
+		const auto found = data->files.find(std::string_view(ending));
+		if (found == data->files.end())
 		{
-			require(ending, "ending");
-			require(bytes, "bytes");
-			require(size, "size");
-			const auto data = handles().find<ResultData>(result, "result");
-			const auto found = data->files.find(std::string_view(ending));
-			if (found == data->files.end())
-			{
-				refuseValue("ending", ending, "one that was an \"output\" of the call");
-			}
-			*bytes = found->second.data();
-			*size = found->second.size();
-		});
+			refuseValue("ending", ending, "one that was an \"output\" of the call");
+		}
+		*bytes = found->second.data();
+		*size = found->second.size();
+	};
+	return guarded(body);
 }
 
 nook_status nook_result_facts(const nook_result* result, const char** json, const char** warnings)
 {
-	return guarded(
-		[&]
+	const auto body = [&]
+	{
+		const auto data = handles().find<ResultData>(result, "result");
+		if (json != nullptr)
 		{
-			const auto data = handles().find<ResultData>(result, "result");
-			if (json != nullptr)
-			{
-				*json = data->facts.c_str();
-			}
-			if (warnings != nullptr)
-			{
-				*warnings = data->warnings.c_str();
-			}
-		});
+			*json = data->facts.c_str();
+		}
+		if (warnings != nullptr)
+		{
+			*warnings = data->warnings.c_str();
+		}
+	};
+	return guarded(body);
 }
 
 void nook_result_destroy(nook_result* result)

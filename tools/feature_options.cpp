@@ -19,8 +19,9 @@ OptionRow featureOption(const FeatureRow& row, ShadeSettings& settings, const st
 		case FeatureKind::flag:
 			return app.add_flag_function(
 				name, [set](std::int64_t count) { set(count > 0 ? 1 : 0); }, help);
-		case FeatureKind::whole: return addWhole(app, name, set, static_cast<int>(row.least), static_cast<int>(row.most), help);
-		case FeatureKind::number: return addNumber(app, name, set, row.least, row.most, help);
+		case FeatureKind::whole:
+			return takesWholeBy(set, static_cast<uint64_t>(row.least), static_cast<uint64_t>(row.most))(app, name, help);
+		case FeatureKind::number: return takesNumberBy(set, row.least, row.most)(app, name, help);
 		case FeatureKind::choice: break;
 		}
 		return takesIndex(row.choices, set)(app, name, help);
@@ -97,19 +98,16 @@ std::string maskMethod()
 
 OptionRow directionsRow(int& directions, OptionRules rules)
 {
-	const auto add = [&directions](CLI::App& app, const std::string& names, const std::string& help)
+	const auto take = [&directions](uint64_t number)
 	{
-		const auto take = [&directions](int number)
+		if (number % 32 != 0)
 		{
-			if (number % 32 != 0)
-			{
-				refuseValue("--directions", std::to_string(number), "a multiple of 32");
-			}
-			directions = number;
-		};
-		return addWhole(app, names, take, kLeastDirections, kMostDirections, help);
+			refuseValue("--directions", std::to_string(number), "a multiple of 32");
+		}
+		directions = static_cast<int>(number);
 	};
-	return {"--directions", add, maskMethod() + ": directions of a pixel's mask, a multiple of 32 (default 128)", std::move(rules)};
+	return {"--directions", takesWholeBy(take, kLeastDirections, kMostDirections),
+			maskMethod() + ": directions of a pixel's mask, a multiple of 32 (default 128)", std::move(rules)};
 }
 
 } // namespace nook

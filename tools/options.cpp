@@ -4,7 +4,7 @@
 #include "call.h"
 #include "core/decimal.h"
 #include "core/error.h"
-#include "core/file.h"
+#include "core/lists.h"
 #include "core/text.h"
 #include "format/pattern_file.h"
 #include "format/tile_json.h"
@@ -17,35 +17,12 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <optional>
-#include <string_view>
 #include <unordered_map>
 
 namespace nook
 {
 namespace
 {
-
-// The whole text as a number in decimal. CLI11's own conversions read 010 as eight and let blanks pass.
-template <class Number> std::optional<Number> parsed(const std::string& text)
-{
-	Number value{};
-	const char* const end = text.data() + text.size();
-	std::from_chars_result result{};
-	if constexpr (std::is_floating_point_v<Number>)
-	{
-		result = readDecimal(text.data(), end, value);
-	}
-	else
-	{
-		result = std::from_chars(text.data(), end, value);
-	}
-	if (result.ec != std::errc{} || result.ptr != end)
-	{
-		return std::nullopt;
-	}
-	return value;
-}
 
 // "--count" of "-n,--count".
 std::string longName(const std::string& names)
@@ -57,13 +34,8 @@ std::string longName(const std::string& names)
 std::vector<std::string> writtenBy(const Outputs& outputs)
 {
 	std::vector<std::string> written = outputs.files;
-	for (const std::string& path : {outputs.json, outputs.depfile, outputs.progress})
-	{
-		if (!path.empty())
-		{
-			written.push_back(path);
-		}
-	}
+	written.insert(written.end(), {outputs.json, outputs.depfile, outputs.progress});
+	std::erase(written, "");
 	return written;
 }
 
@@ -143,16 +115,6 @@ void checkRules(const CLI::App& app, const std::string& name, const OptionRules&
 	}
 }
 
-// Takes the value before the option's rules are checked, so that a bad value is what is reported first.
-CLI::Option* addParsed(CLI::App& app, const std::string& names, const std::string& help,
-					   const std::function<void(std::string)>& take)
-{
-	return app
-		.add_option_function<std::string>(
-			names, [](const std::string&) {}, help)
-		->each(take);
-}
-
 } // namespace
 
 Facts verbFacts(std::string_view verb)
@@ -164,12 +126,12 @@ Facts verbFacts(std::string_view verb)
 	return facts;
 }
 
-std::vector<std::string> partsOf(const std::string& list)
+std::vector<std::string> partsOf(const std::string& list, char between)
 {
 	std::vector<std::string> parts;
 	for (std::size_t begin = 0; !list.empty() && begin <= list.size();)
 	{
-		const std::size_t end = std::min(list.find(',', begin), list.size());
+		const std::size_t end = std::min(list.find(between, begin), list.size());
 		parts.push_back(list.substr(begin, end - begin));
 		begin = end + 1;
 	}
@@ -183,7 +145,17 @@ void refuse(const std::string& message)
 
 void refuseValue(const std::string& option, const std::string& found, const std::string& expected)
 {
-	throw Error(ExitCode::usage, option + ": found '" + found + "', expected " + expected);
+	refuse(option + ": found '" + found + "', expected " + expected);
+}
+
+OptionRules needs(const std::string& condition, const std::string& expected, const std::string& found)
+{
+	return {.needs = {{condition, expected, found}}};
+}
+
+OptionRules excludes(const std::string& condition, const std::string& expected, const std::string& found)
+{
+	return {.excludes = {{condition, expected, found}}};
 }
 
 void addOptions(CLI::App& app, const std::vector<OptionRow>& rows)
@@ -267,35 +239,26 @@ OptionValue takesBytes(uint64_t& value)
 
 OptionValue takesIndex(std::span<const std::string_view> names, const std::function<void(std::size_t)>& choose)
 {
-	std::string listed;
-	std::string spoken;
-	for (std::size_t i = 0; i < names.size(); ++i)
-	{
-		listed += std::string(i == 0 ? "" : "|") + std::string(names[i]);
-		spoken += std::string(i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + std::string(names[i]);
-	}
-	const auto take =
-		[names = std::vector(names.begin(), names.end()), choose, spoken](const std::string& option, const std::string& text)
+	const auto take = [names = std::vector(names.begin(), names.end()), choose](const std::string& option, const std::string& text)
 	{
 		const auto found = std::find(names.begin(), names.end(), text);
 		if (found == names.end())
 		{
-			refuseValue(option, text, spoken);
+			refuseValue(option, text, spokenList(names));
 		}
 		choose(static_cast<std::size_t>(found - names.begin()));
 	};
-	return takesParsed(listed, take);
+	return takesParsed(joinedText(names, "|"), take);
 }
 
 OptionValue takesParsed(const std::string& kind, const TakeText& take)
 {
 	return [kind, take](CLI::App& app, const std::string& names, const std::string& help)
 	{
-		const auto one = [name = longName(names), take](const std::string& text)
-		{
-			take(name, text);
-		};
-		return addParsed(app, names, help, one)->type_name(kind);
+		CLI::Option* const option = app.add_option_function<std::string>(
+			names, [](const std::string&) {}, help);
+		// Takes the value before the option's rules are checked, so that a bad value is what is reported first.
+		return option->each([name = longName(names), take](const std::string& text) { take(name, text); })->type_name(kind);
 	};
 }
 
@@ -315,50 +278,32 @@ OptionValue takesEach(const std::string& kind, const TakeText& take)
 	};
 }
 
-CLI::Option* addWhole(CLI::App& app, const std::string& names, const std::function<void(int)>& take, int least, int most,
-					  const std::string& help)
+OptionValue takesWholeBy(const std::function<void(uint64_t)>& take, uint64_t least, uint64_t most, const std::string& kind)
 {
-	return addLong(
-		app, names, [take](uint64_t number) { take(static_cast<int>(number)); }, static_cast<uint64_t>(least),
-		static_cast<uint64_t>(most), help);
-}
-
-CLI::Option* addLong(CLI::App& app, const std::string& names, const std::function<void(uint64_t)>& take, uint64_t least,
-					 uint64_t most, const std::string& help)
-{
-	const auto check = [take, names, least, most](const std::string& text)
+	const auto check = [take, least, most](const std::string& name, const std::string& text)
 	{
-		const std::optional<uint64_t> number = parsed<uint64_t>(text);
+		const std::optional<uint64_t> number = numberFrom<uint64_t>(text);
 		if (!number || *number < least || *number > most)
 		{
-			refuseValue(longName(names), text, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+			refuseValue(name, text, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
 		}
 		take(*number);
 	};
-	return addParsed(app, names, help, check)->type_name("N");
+	return takesParsed(kind, check);
 }
 
-CLI::Option* addSeed(CLI::App& app, uint32_t& value)
+OptionValue takesNumberBy(const std::function<void(double)>& take, double least, double most, const std::string& kind)
 {
-	return addLong(
-			   app, "--seed", [&value](uint64_t seed) { value = static_cast<uint32_t>(seed); }, 0,
-			   std::numeric_limits<uint32_t>::max(), "Seed of everything random (default 1)")
-		->type_name("S");
-}
-
-CLI::Option* addNumber(CLI::App& app, const std::string& names, const std::function<void(double)>& take, double least, double most,
-					   const std::string& help)
-{
-	const auto check = [take, names, least, most](const std::string& text)
+	const auto check = [take, least, most](const std::string& name, const std::string& text)
 	{
-		const std::optional<double> number = parsed<double>(text);
+		const std::optional<double> number = numberFrom<double>(text);
 		if (!number || !(*number >= least && *number <= most))
 		{
-			refuseValue(longName(names), text, "a number from " + numberText(least) + " to " + numberText(most));
+			refuseValue(name, text, "a number from " + numberText(least) + " to " + numberText(most));
 		}
 		take(*number);
 	};
-	return addParsed(app, names, help, check)->type_name("X");
+	return takesParsed(kind, check);
 }
 
 OptionValue takesMatrix(std::optional<glm::dmat4>& value)
@@ -377,7 +322,7 @@ OptionValue takesMatrix(std::optional<glm::dmat4>& value)
 		for (std::size_t at = text.find_first_not_of(between); at != std::string::npos; at = text.find_first_not_of(between, end))
 		{
 			end = std::min(text.find_first_of(between, at), text.size());
-			const std::optional<double> number = parsed<double>(text.substr(at, end - at));
+			const std::optional<double> number = numberFrom<double>(text.substr(at, end - at));
 			if (!number || !std::isfinite(*number))
 			{
 				refuseValue(name, text.substr(at, end - at), "16 finite numbers, column by column, with commas between");
@@ -398,20 +343,31 @@ OptionValue takesMatrix(std::optional<glm::dmat4>& value)
 	return takesParsed("16 NUMBERS", take);
 }
 
-CLI::Option* addCounts(CLI::App& app, const std::string& option, CountRange& value, int most, const std::string& help)
+OptionValue takesCounts(CountRange& value, int most)
 {
-	const auto take = [&value, option, most](const std::string& text)
+	const auto take = [&value, most](const std::string& name, const std::string& text)
 	{
 		const std::size_t dash = text.find('-');
-		const std::optional<int> first = parsed<int>(text.substr(0, dash));
-		const std::optional<int> last = dash == std::string::npos ? first : parsed<int>(text.substr(dash + 1));
+		const std::optional<int> first = numberFrom<int>(text.substr(0, dash));
+		const std::optional<int> last = dash == std::string::npos ? first : numberFrom<int>(text.substr(dash + 1));
 		if (!first || !last || *first < 1 || *last < *first || *last > most)
 		{
-			refuseValue(option, text, "FIRST-LAST or one number, from 1 to " + std::to_string(most));
+			refuseValue(name, text, "FIRST-LAST or one number, from 1 to " + std::to_string(most));
 		}
 		value = {*first, *last};
 	};
-	return app.add_option_function<std::string>(option, take, help)->type_name("FIRST-LAST");
+	return takesParsed("FIRST-LAST", take);
+}
+
+OptionRow seedRow(uint32_t& value)
+{
+	return {"--seed", takesWhole(value, 0, std::numeric_limits<uint32_t>::max(), "S"), "Seed of everything random (default 1)"};
+}
+
+OptionRow glDeviceRow(std::optional<int>& device, OptionRules rules)
+{
+	return {"--gl-device", takesWhole(device, 0, 255),
+			"Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)", std::move(rules)};
 }
 
 OptionRow filterRow(std::vector<std::string>& names, const std::string& help)
@@ -444,26 +400,13 @@ void addJson(CLI::App& app, std::string& json)
 
 void addOutputs(CLI::App& app, Outputs& outputs, std::span<const std::string_view> endings)
 {
-	std::string listed;
-	for (const std::string_view ending : endings)
+	const auto take = [&outputs](const std::string&, const std::string& file)
 	{
-		listed += " " + std::string(ending);
-	}
-	const auto take = [&outputs](const std::vector<std::string>& files)
-	{
-		for (const std::string& file : files)
-		{
-			if (file.empty() || (file.size() > 1 && file[0] == '-'))
-			{
-				refuseValue("-o", file, "FILE");
-			}
-		}
-		outputs.files = files;
+		checkText("-o", file, "FILE");
+		outputs.files.push_back(file);
 	};
-	app.add_option_function<std::vector<std::string>>("-o,--output", take,
-													  "File to write, may be repeated; its ending picks the format:" + listed)
-		->type_name("FILE")
-		->allow_extra_args(false);
+	addOptions(app, {{"-o,--output", takesEach("FILE", take),
+					  "File to write, may be repeated; its ending picks the format: " + joinedText(endings, " ")}});
 	addJson(app, outputs.json);
 	addOptions(app,
 			   {{"--depfile", takesText(outputs.depfile, "FILE"), "Lists the files that were read, as a rule for Make or Ninja"}});
@@ -471,20 +414,19 @@ void addOutputs(CLI::App& app, Outputs& outputs, std::span<const std::string_vie
 
 void addCache(CLI::App& app)
 {
-	const auto check = [](const std::string& folder)
+	const auto check = [](const std::string& name, const std::string& folder)
 	{
-		checkText("--cache", folder, "DIR");
+		checkText(name, folder, "DIR");
 	};
-	app.add_option_function<std::string>("--cache", check,
-										 "Folder for finished work: a run that was killed continues from it, with the same bytes")
-		->type_name("DIR");
+	addOptions(app, {{"--cache", takesParsed("DIR", check),
+					  "Folder for finished work: a run that was killed continues from it, with the same bytes"}});
 }
 
 std::optional<WorkShare> shareOf(const std::string& text)
 {
 	const std::size_t slash = text.find('/');
-	const int of = slash == std::string::npos ? 0 : parsed<int>(text.substr(slash + 1)).value_or(0);
-	const int number = parsed<int>(text.substr(0, slash)).value_or(0);
+	const int of = slash == std::string::npos ? 0 : numberFrom<int>(text.substr(slash + 1)).value_or(0);
+	const int number = numberFrom<int>(text.substr(0, slash)).value_or(0);
 	return number >= 1 && number <= of && of <= kMaxShares ? std::optional(WorkShare{number, of}) : std::nullopt;
 }
 
@@ -504,31 +446,30 @@ void addRun(CLI::App& app, Outputs& outputs, bool shares)
 		return;
 	}
 	addCache(app);
-	const auto take = [&share = outputs.share](const std::string& text)
+	const auto take = [&share = outputs.share](const std::string& name, const std::string& text)
 	{
 		share = shareOf(text);
 		if (!share)
 		{
-			refuseValue("--share", text, "K/N, whole numbers with 1 <= K <= N <= " + std::to_string(kMaxShares));
+			refuseValue(name, text, "K/N, whole numbers with 1 <= K <= N <= " + std::to_string(kMaxShares));
 		}
 	};
-	app.add_option_function<std::string>("--share", take,
-										 "Computes the Kth of N shares of the work into --cache and writes no output; the same "
-										 "command without --share then writes it")
-		->type_name("K/N");
+	addOptions(app, {{"--share", takesParsed("K/N", take),
+					  "Computes the Kth of N shares of the work into --cache and writes no output; the same command without "
+					  "--share then writes it"}});
 }
 
 void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endings, const std::vector<std::string>& inputs)
 {
 	if (outputs.files.empty() && outputs.json.empty())
 	{
-		throw Error(ExitCode::usage, "-o: nothing to write, expected -o FILE or --json FILE");
+		refuse("-o: nothing to write, expected -o FILE or --json FILE");
 	}
 	const bool to_files =
 		std::any_of(outputs.files.begin(), outputs.files.end(), [](const std::string& path) { return path != "-"; });
 	if (!outputs.depfile.empty() && !to_files)
 	{
-		throw Error(ExitCode::usage, "--depfile: nothing depends on the files read, expected -o FILE as well");
+		refuse("--depfile: nothing depends on the files read, expected -o FILE as well");
 	}
 	for (const std::string& path : outputs.files)
 	{
@@ -585,9 +526,30 @@ void checkDistinct(const std::vector<std::string>& written, const std::vector<st
 		if (!is_new)
 		{
 			const std::string found = other->second == path ? "named twice" : "found the same file as " + other->second;
-			throw Error(ExitCode::usage, path + ": " + found + ", expected another file for every input and output");
+			refuse(path + ": " + found + ", expected another file for every input and output");
 		}
 	}
+}
+
+Outputs expanded(Outputs outputs, const std::function<std::vector<std::string>(const std::string& file)>& filesOf)
+{
+	for (const std::string& file : std::exchange(outputs.files, {}))
+	{
+		const std::vector<std::string> files = filesOf(file);
+		outputs.files.insert(outputs.files.end(), files.begin(), files.end());
+	}
+	return outputs;
+}
+
+double meanOf(const std::vector<float>& values)
+{
+	return sumOver(values, [](float value) { return static_cast<double>(value); }) / static_cast<double>(values.size());
+}
+
+std::string spokenList(std::span<const std::string_view> names)
+{
+	const std::string first = joinedText(names.first(names.size() - 1), ", ");
+	return first + (first.empty() ? "" : " or ") + std::string(names.back());
 }
 
 void checkName(const std::string& name)
@@ -616,7 +578,8 @@ void giveSamples(std::span<const Pattern> variants, std::vector<std::size_t> sha
 	give<double>("points", points, shape);
 }
 
-void addSide(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::vector<std::string>& read)
+void addSide(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::vector<std::string>& read,
+			 const std::string& lines)
 {
 	if (!outputs.json.empty())
 	{
@@ -626,18 +589,22 @@ void addSide(OutputSet& files, const Outputs& outputs, const std::string& facts,
 	{
 		files.add(outputs.depfile, depfileOf(outputs, read));
 	}
-}
-
-void addSummary(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::string& lines)
-{
-	if (!outputs.json.empty())
-	{
-		files.add(outputs.json, facts);
-	}
-	if (t_call == nullptr && isStdoutFree(outputs))
+	if (!lines.empty() && t_call == nullptr && isStdoutFree(outputs))
 	{
 		files.add("-", lines);
 	}
+}
+
+void writeOutputs(const Outputs& outputs, const std::function<std::string(const std::string& path)>& bytesOf,
+				  const std::string& facts, const std::vector<std::string>& read, const std::string& lines)
+{
+	OutputSet files;
+	for (const std::string& path : outputs.files)
+	{
+		files.add(path, bytesOf(path));
+	}
+	addSide(files, outputs, facts, read, lines);
+	files.commit();
 }
 
 void warn(const std::string& message)

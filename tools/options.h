@@ -76,8 +76,8 @@ std::vector<Verb> addVerbs(CLI::App& nook);
 // The facts of --json, beginning with schema, verb and version.
 Facts verbFacts(std::string_view verb);
 
-// The parts of a list with commas between them; none of an empty list.
-std::vector<std::string> partsOf(const std::string& list);
+// The parts of a list; none of an empty list.
+std::vector<std::string> partsOf(const std::string& list, char between = ',');
 
 // Throws Error (usage).
 [[noreturn]] void refuse(const std::string& message);
@@ -106,6 +106,10 @@ struct OptionRules
 	std::vector<OptionRule> excludes{}; // the option is given only where none of these holds
 	std::vector<OptionRule> needs{};    // and all of these do
 };
+
+inline const OptionRules kRequired{.required = true};
+OptionRules needs(const std::string& condition, const std::string& expected = {}, const std::string& found = {});
+OptionRules excludes(const std::string& condition, const std::string& expected = {}, const std::string& found = {});
 
 struct OptionRow
 {
@@ -136,20 +140,10 @@ OptionValue takesParsed(const std::string& kind, const TakeText& take);
 OptionValue takesEach(const std::string& kind, const TakeText& take); // may be repeated
 
 OptionValue takesIndex(std::span<const std::string_view> names, const std::function<void(std::size_t)>& choose);
-template <class Whole> OptionValue takesWhole(Whole& value, uint64_t least, uint64_t most, const std::string& kind = "N");
-template <class Number> OptionValue takesNumber(Number& value, double least, double most, const std::string& kind = "X");
-// The value whose place among `names` is that of the word: an enumerator, an index, or whether it is the second of two.
-template <class Value> OptionValue takesChoice(std::span<const std::string_view> names, Value& value);
 
 // Plain decimal numbers within a range; anything else is refused.
-CLI::Option* addWhole(CLI::App& app, const std::string& names, const std::function<void(int)>& take, int least, int most,
-					  const std::string& help);
-// For numbers that may be larger.
-CLI::Option* addLong(CLI::App& app, const std::string& names, const std::function<void(uint64_t)>& take, uint64_t least,
-					 uint64_t most, const std::string& help);
-CLI::Option* addSeed(CLI::App& app, uint32_t& value);
-CLI::Option* addNumber(CLI::App& app, const std::string& names, const std::function<void(double)>& take, double least, double most,
-					   const std::string& help);
+OptionValue takesWholeBy(const std::function<void(uint64_t)>& take, uint64_t least, uint64_t most, const std::string& kind = "N");
+OptionValue takesNumberBy(const std::function<void(double)>& take, double least, double most, const std::string& kind = "X");
 
 // The type of a variable's value, which may be optional.
 template <class Variable> struct ValueOf
@@ -161,31 +155,38 @@ template <class Value> struct ValueOf<std::optional<Value>>
 	using Type = Value;
 };
 
-template <class Whole> OptionValue takesWhole(Whole& value, uint64_t least, uint64_t most, const std::string& kind)
+template <class Whole> OptionValue takesWhole(Whole& value, uint64_t least, uint64_t most, const std::string& kind = "N")
 {
-	return [&value, least, most, kind](CLI::App& app, const std::string& names, const std::string& help)
+	const auto take = [&value](uint64_t number)
 	{
-		const auto take = [&value](uint64_t number)
-		{
-			value = static_cast<typename ValueOf<Whole>::Type>(number);
-		};
-		return addLong(app, names, take, least, most, help)->type_name(kind);
+		value = static_cast<typename ValueOf<Whole>::Type>(number);
 	};
+	return takesWholeBy(take, least, most, kind);
 }
 
-template <class Number> OptionValue takesNumber(Number& value, double least, double most, const std::string& kind)
+template <class Number> OptionValue takesNumber(Number& value, double least, double most, const std::string& kind = "X")
 {
-	return [&value, least, most, kind](CLI::App& app, const std::string& names, const std::string& help)
-	{
-		return addNumber(
-				   app, names, [&value](double number) { value = number; }, least, most, help)
-			->type_name(kind);
-	};
+	return takesNumberBy([&value](double number) { value = number; }, least, most, kind);
 }
 
+// The value whose place among `names` is that of the word: an enumerator, an index, or whether it is the second of two.
 template <class Value> OptionValue takesChoice(std::span<const std::string_view> names, Value& value)
 {
 	return takesIndex(names, [&value](std::size_t i) { value = static_cast<typename ValueOf<Value>::Type>(i); });
+}
+
+// A value that `parse` makes of the option's name and the text.
+template <class Variable, class Value>
+OptionValue takesParsed(const std::string& kind, Variable& value, Value (*parse)(const std::string& name, const std::string& text))
+{
+	return takesParsed(kind, [&value, parse](const std::string& name, const std::string& text) { value = parse(name, text); });
+}
+template <class Value>
+OptionValue takesEach(const std::string& kind, std::vector<Value>& values,
+					  Value (*parse)(const std::string& name, const std::string& text))
+{
+	return takesEach(kind,
+					 [&values, parse](const std::string& name, const std::string& text) { values.push_back(parse(name, text)); });
 }
 
 // "1-64" or "7".
@@ -194,7 +195,10 @@ struct CountRange
 	int first = 1;
 	int last = 64;
 };
-CLI::Option* addCounts(CLI::App& app, const std::string& option, CountRange& value, int most, const std::string& help);
+OptionValue takesCounts(CountRange& value, int most);
+
+OptionRow seedRow(uint32_t& value);
+OptionRow glDeviceRow(std::optional<int>& device, OptionRules rules = {});
 
 // --filter and --ema, of nook tile and nook info: what an engine does with a tile's variants behind the pass that reads them.
 OptionRow filterRow(std::vector<std::string>& names, const std::string& help);
@@ -242,14 +246,27 @@ void checkRead(const Outputs& outputs, const std::vector<std::string>& read);
 // No two of `written` are one file, and none is a file of `read`, by whatever name. Throws Error (usage) that names both.
 void checkDistinct(const std::vector<std::string>& written, const std::vector<std::string>& read);
 
+// The outputs with each file replaced by those that it stands for.
+Outputs expanded(Outputs outputs, const std::function<std::vector<std::string>(const std::string& file)>& filesOf);
+
+double meanOf(const std::vector<float>& values);
+
+// "a, b or c".
+std::string spokenList(std::span<const std::string_view> names);
+
 // Empty (none given) or an identifier.
 void checkName(const std::string& name);
 
 // For a caller (call.h): points and weights, of that shape before their coordinates.
 void giveSamples(std::span<const Pattern> variants, std::vector<std::size_t> shape);
 
-// Adds the facts and the list of files read, where they are asked for.
-void addSide(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::vector<std::string>& read);
+// Adds the facts and the list of files read, where they are asked for, and the lines for people where standard output is free.
+void addSide(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::vector<std::string>& read,
+			 const std::string& lines = {});
+
+// Writes all files of -o, and the above.
+void writeOutputs(const Outputs& outputs, const std::function<std::string(const std::string& path)>& bytesOf,
+				  const std::string& facts, const std::vector<std::string>& read, const std::string& lines = {});
 
 // The verb that was parsed below `app`: of "report", say, "error".
 const CLI::App& parsedVerb(const CLI::App& app);
@@ -264,9 +281,6 @@ std::vector<std::string> identityOf(std::vector<std::string> command);
 // Runs a verb whose options have been parsed, as a whole or as a share of it. With --cache, the run's results are kept there.
 // Throws what the verb throws.
 void runVerb(const Verb& verb, VerbProgress& progress);
-
-// Adds the facts where they are asked for, and the lines where standard output is free.
-void addSummary(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::string& lines);
 
 // A line on standard error.
 void warn(const std::string& message);

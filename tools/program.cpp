@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "core/text.h"
 #include "core/work_units.h"
@@ -82,7 +83,6 @@ void addWords(std::vector<std::string>& words, const CLI::Option& option)
 	}
 }
 
-using nook::ExitCode;
 // Names from a file may be of any length: of a line as long as that, the beginning and the end are shown.
 std::string shortened(const std::string& line)
 {
@@ -101,9 +101,9 @@ std::string shortened(const std::string& line)
 	};
 	return line.substr(0, letter(kMost / 2)) + " ... " + line.substr(letter(line.size() - kMost / 2));
 }
-int failed(nook::VerbProgress& progress, ExitCode code, const std::string& message)
+int failed(VerbProgress& progress, ExitCode code, const std::string& message)
 {
-	const std::string line = shortened(nook::oneLine(message));
+	const std::string line = shortened(oneLine(message));
 	progress.end(code, line);
 	std::fprintf(stderr, "nook: %s\n", line.c_str());
 	return static_cast<int>(code);
@@ -112,17 +112,13 @@ int failed(nook::VerbProgress& progress, ExitCode code, const std::string& messa
 std::string verbsOf(const CLI::App& app)
 {
 	const std::vector<const CLI::App*> verbs = app.get_subcommands([](const CLI::App*) { return true; });
-	std::string names;
-	for (std::size_t i = 0; i < verbs.size(); ++i)
-	{
-		names += std::string(i == 0 ? "" : i + 1 < verbs.size() ? ", " : " or ") + verbs[i]->get_name();
-	}
-	return names;
+	const std::vector<std::string> names = mapped(verbs, [](const CLI::App* verb) { return verb->get_name(); });
+	return names.empty() ? "" : spokenList(std::vector<std::string_view>(names.begin(), names.end()));
 }
 // CLI11's wording, with what to do about it.
 std::string misuseText(const CLI::App& program, const CLI::ParseError& error)
 {
-	const CLI::App& app = nook::parsedVerb(program);
+	const CLI::App& app = parsedVerb(program);
 	const std::string verbs = verbsOf(app);
 	if (!verbs.empty())
 	{
@@ -140,7 +136,7 @@ std::string misuseText(const CLI::App& program, const CLI::ParseError& error)
 // The library speaks of values, which are options here: where a message begins with one or names one in brackets, it is written as
 // in the command: "count: found 0" → "--count: found 0", "symmetric centre: ...", "... (threads)". Errors of files begin with a
 // file's name, which may be that of an option.
-std::string withOptions(const CLI::App& verb, const nook::Error& error)
+std::string withOptions(const CLI::App& verb, const Error& error)
 {
 	std::string message = error.what();
 	const auto dashed = [&](std::size_t at) // what follows the option there, or the end where none is
@@ -171,14 +167,14 @@ std::string withOptions(const CLI::App& verb, const nook::Error& error)
 std::string versionText()
 {
 	std::string text = "nook " NOOK_VERSION "\ncomponents: patterns";
-	for (const auto& [there, name] : {std::pair(nook::kHasLevels, " levels"), std::pair(nook::kHasShading, " shading"),
-									  std::pair(nook::kHasReports, " reports")})
+	for (const auto& [there, name] :
+		 {std::pair(kHasLevels, " levels"), std::pair(kHasShading, " shading"), std::pair(kHasReports, " reports")})
 	{
 		text += there ? name : "";
 	}
-	return text + "\ncommit: " + nook::kCommit + "\n";
+	return text + "\ncommit: " + kCommit + "\n";
 }
-void run(const std::vector<std::string>& command, nook::VerbProgress& progress)
+void run(const std::vector<std::string>& command, VerbProgress& progress)
 {
 	CLI::App nook(NOOK_DESCRIPTION);
 	nook.name("nook");
@@ -188,35 +184,35 @@ void run(const std::vector<std::string>& command, nook::VerbProgress& progress)
 	nook.require_subcommand(1);
 	nook.footer("Exit codes: 0 ok, 1 usage, 2 file cannot be read or written, 3 invalid input, 4 failed at run time,\n"
 				"5 not supported, 7 difference found.");
-	const std::vector<nook::Verb> verbs = nook::addVerbs(nook);
+	const std::vector<Verb> verbs = addVerbs(nook);
 	try
 	{
 		std::vector<std::string> words(command.rbegin(), command.rend()); // as CLI11 takes them
 		words.resize(std::max<std::size_t>(words.size(), 1) - 1);         // without the program's name
 		nook.parse(std::move(words));
-		for (const nook::Verb& verb : verbs)
+		for (const Verb& verb : verbs)
 		{
 			if (verb.app->parsed())
 			{
-				nook::runVerb(verb, progress);
+				runVerb(verb, progress);
 			}
 		}
 	}
 	catch (const CLI::CallForHelp&)
 	{
-		nook::writeFile("-", nook.help());
+		writeFile("-", nook.help());
 	}
 	catch (const CLI::CallForVersion&)
 	{
-		nook::writeFile("-", versionText());
+		writeFile("-", versionText());
 	}
 	catch (const CLI::ParseError& error)
 	{
-		throw nook::Error(ExitCode::usage, misuseText(nook, error));
+		refuse(misuseText(nook, error));
 	}
-	catch (const nook::Error& error)
+	catch (const Error& error)
 	{
-		throw nook::Error(error.code(), withOptions(nook::parsedVerb(nook), error));
+		throw Error(error.code(), withOptions(parsedVerb(nook), error));
 	}
 }
 constexpr const char* kNoMemory = "memory: found none left, expected a smaller task";
@@ -227,7 +223,7 @@ constexpr const char* kNoMemory = "memory: found none left, expected a smaller t
 	static std::atomic_flag said;
 	while (said.test_and_set())
 	{
-		nook::waitForEnd(); // another thread has something to say, too
+		waitForEnd(); // another thread has something to say, too
 	}
 	const char* message = "an error that cannot be handled";
 	try
@@ -248,8 +244,8 @@ constexpr const char* kNoMemory = "memory: found none left, expected a smaller t
 	catch (...)
 	{
 	}
-	std::fprintf(stderr, "%snook: %s\n", nook::isTerminal() ? "\r\033[K" : "", message);
-	nook::removeTemporaryFiles();
+	std::fprintf(stderr, "%snook: %s\n", isTerminal() ? "\r\033[K" : "", message);
+	removeTemporaryFiles();
 	std::_Exit(static_cast<int>(ExitCode::runtime));
 }
 
@@ -332,8 +328,7 @@ void runVerb(const Verb& verb, VerbProgress& progress)
 	{
 		if (!share.empty())
 		{
-			throw Error(ExitCode::usage,
-						"--share: found without --cache, expected --cache DIR, where the share's results are kept");
+			refuse("--share: found without --cache, expected --cache DIR, where the share's results are kept");
 		}
 		verb.run(progress);
 		return;

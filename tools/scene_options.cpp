@@ -3,10 +3,10 @@
 
 #include "core/decimal.h"
 #include "core/image.h"
+#include "core/lists.h"
 
-#include <array>
-#include <charconv>
 #include <cmath>
+#include <limits>
 
 namespace nook
 {
@@ -53,50 +53,30 @@ constexpr int kMaxSide = 32768;
 constexpr int kMaxAutomatic = 64;
 constexpr std::string_view kAutoViews = "auto:";
 
-template <class Number> std::optional<Number> numberOf(std::string_view text)
+// So many numbers, or nothing.
+template <class Number, std::size_t count>
+std::optional<std::array<Number, count>> numbersOf(const std::string& text, double least, double most, char between = ',')
 {
-	Number value{};
-	const std::from_chars_result result = std::from_chars(text.data(), text.data() + text.size(), value);
-	return result.ec == std::errc{} && result.ptr == text.data() + text.size() ? std::optional(value) : std::nullopt;
-}
-
-// So many numbers with commas between them, each of a level's coordinates.
-template <std::size_t count> std::optional<std::array<double, count>> numbersOf(std::string_view text)
-{
-	std::array<double, count> numbers{};
-	for (std::size_t i = 0; i < count; ++i)
+	const std::vector<std::string> parts = partsOf(text, between);
+	std::array<Number, count> numbers{};
+	bool good = parts.size() == count;
+	for (std::size_t i = 0; good && i < count; ++i)
 	{
-		const std::size_t end = std::min(text.find(','), text.size());
-		const std::from_chars_result result = readDecimal(text.data(), text.data() + end, numbers[i]);
-		const bool is_last = end == text.size();
-		if (result.ec != std::errc{} || result.ptr != text.data() + end || !(std::fabs(numbers[i]) <= kFarthest_m) ||
-			is_last != (i + 1 == count))
-		{
-			return std::nullopt;
-		}
-		text.remove_prefix(is_last ? end : end + 1);
+		const std::optional<Number> number = numberFrom<Number>(parts[i]);
+		good = number && *number >= least && *number <= most;
+		numbers[i] = number.value_or(Number{});
 	}
-	return numbers;
+	return good ? std::optional(numbers) : std::nullopt;
 }
 
 std::array<int, 4> viewportOf(const std::string& name, const std::string& text)
 {
-	std::array<int, 4> viewport{};
-	const char* at = text.data();
-	const char* const end = at + text.size();
-	bool good = true;
-	for (std::size_t i = 0; good && i < viewport.size(); ++i)
-	{
-		const std::from_chars_result read = std::from_chars(at, end, viewport[i]);
-		good = read.ec == std::errc{} && viewport[i] >= (i < 2 ? 0 : 1) &&
-			   (i == 3 ? read.ptr == end : read.ptr != end && *read.ptr == ',');
-		at = read.ptr + (good && i < 3 ? 1 : 0);
-	}
-	if (!good)
+	const std::optional<std::array<int, 4>> viewport = numbersOf<int, 4>(text, 0, std::numeric_limits<int>::max());
+	if (!viewport || (*viewport)[2] < 1 || (*viewport)[3] < 1)
 	{
 		refuseValue(name, text, "X,Y,W,H in whole pixels, as in 0,0,640,360");
 	}
-	return viewport;
+	return *viewport;
 }
 
 void takeCamera(const std::string& name, const std::string& text, CameraOptions& options)
@@ -109,7 +89,7 @@ void takeCamera(const std::string& name, const std::string& text, CameraOptions&
 	options.automatic = 0;
 	if (text.starts_with(kAutoViews))
 	{
-		const std::optional<int> count = numberOf<int>(std::string_view(text).substr(kAutoViews.size()));
+		const std::optional<int> count = numberFrom<int>(std::string_view(text).substr(kAutoViews.size()));
 		if (!count || *count < 1 || *count > kMaxAutomatic)
 		{
 			refuseValue(name, text, "auto:K with K from 1 to " + std::to_string(kMaxAutomatic));
@@ -140,16 +120,11 @@ OptionRow sizeRow(CameraOptions& options, const std::string& standard)
 			"Width and height of the picture in pixels (default " + standard + ")"};
 }
 
-OptionValue takesPosition(std::optional<glm::dvec3>& value)
-{
-	return takesParsed("X,Y,Z", [&value](const std::string& name, const std::string& text) { value = positionOf(name, text); });
-}
-
 } // namespace
 
 glm::dvec3 positionOf(const std::string& option, const std::string& text)
 {
-	const std::optional<std::array<double, 3>> numbers = numbersOf<3>(text);
+	const std::optional<std::array<double, 3>> numbers = numbersOf<double, 3>(text, -kFarthest_m, kFarthest_m);
 	if (!numbers)
 	{
 		refuseValue(option, text, "X,Y,Z: three numbers, each from -1e15 to 1e15");
@@ -159,28 +134,20 @@ glm::dvec3 positionOf(const std::string& option, const std::string& text)
 
 glm::ivec2 sizeOf(const std::string& option, const std::string& text)
 {
-	const std::size_t cross = text.find('x');
-	const std::optional<int> width = numberOf<int>(std::string_view(text).substr(0, cross));
-	const std::optional<int> height =
-		cross == std::string::npos ? std::nullopt : numberOf<int>(std::string_view(text).substr(cross + 1));
-	const auto isSide = [](std::optional<int> side)
-	{
-		return side && *side >= 1 && *side <= kMaxSide;
-	};
+	const std::optional<std::array<int, 2>> size = numbersOf<int, 2>(text, 1, kMaxSide, 'x');
 	// A G-buffer has four channels.
-	if (!isSide(width) || !isSide(height) ||
-		static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) > kMaxImageValues / 4)
+	if (!size || static_cast<std::size_t>((*size)[0]) * static_cast<std::size_t>((*size)[1]) > kMaxImageValues / 4)
 	{
 		refuseValue(option, text,
 					"WxH, each from 1 to " + std::to_string(kMaxSide) + ", at most " + std::to_string(kMaxImageValues / 4) +
 						" pixels");
 	}
-	return {*width, *height};
+	return {(*size)[0], (*size)[1]};
 }
 
 Bounds boxOf(const std::string& option, const std::string& text)
 {
-	const std::optional<std::array<double, 6>> numbers = numbersOf<6>(text);
+	const std::optional<std::array<double, 6>> numbers = numbersOf<double, 6>(text, -kFarthest_m, kFarthest_m);
 	if (!numbers || (*numbers)[0] > (*numbers)[3] || (*numbers)[1] > (*numbers)[4] || (*numbers)[2] > (*numbers)[5])
 	{
 		refuseValue(option, text, "six numbers X,Y,Z,X,Y,Z, the least corner of a box first, metres");
@@ -208,7 +175,7 @@ void addLoadOptions(CLI::App& app, LoadSettings& load)
 
 void addLevelOptions(CLI::App& app, LevelOptions& options)
 {
-	addOptions(app, {{"LEVEL", takesText(options.level, "LEVEL"), kLevelHelp, {.required = true}}});
+	addOptions(app, {{"LEVEL", takesText(options.level, "LEVEL"), kLevelHelp, kRequired}});
 	addLoadOptions(app, options.load);
 }
 
@@ -224,30 +191,28 @@ void addPictureSize(CLI::App& app, CameraOptions& options, const std::string& st
 
 void addCameraOptions(CLI::App& app, CameraOptions& options)
 {
-	addOptions(
-		app,
-		{cameraRow(options),
-		 {"--eye",
-		  takesPosition(options.eye),
-		  "Where the camera stands, in the level's metres; needs --target",
-		  {.excludes = {{"--camera"}}, .needs = {{"--target"}}}},
-		 {"--target", takesPosition(options.target), "What the camera looks at; +y is up in the picture", {.needs = {{"--eye"}}}},
-		 {"--fov", takesNumber(options.fov_y_deg, 0.01, 179.0),
-		  "Whole vertical angle of view in degrees (default: the camera's own; 60 with --eye or --world-to-camera)"},
-		 {"--near", takesNumber(options.near_m, 1e-6, 1e6),
-		  "Near plane of the projection in metres (default: the camera's own, else 0.1); rays are not cut by it"},
-		 {"--projection",
-		  takesMatrix(options.projection),
-		  "A projection of any kind instead of the camera's: OpenGL's x and y, any depth (reversed, infinite, orthographic, "
-		  "off-centre); 16 numbers, column by column",
-		  {.excludes = {{"--fov or --near"}}}},
-		 {"--world-to-camera",
-		  takesMatrix(options.camera_from_world),
-		  "Where the camera stands, as a rotation and translation: 16 numbers, column by column; it looks down its -z",
-		  {.excludes = {{"--camera or --eye"}}}},
-		 sizeRow(options, "1280x720"),
-		 {"--allow-inside", takesFlag(options.allow_inside),
-		  "Accept a camera inside something solid, for levels whose faces are turned round"}});
+	addOptions(app,
+			   {cameraRow(options),
+				{"--eye",
+				 takesParsed("X,Y,Z", options.eye, positionOf),
+				 "Where the camera stands, in the level's metres; needs --target",
+				 {.excludes = {{"--camera"}}, .needs = {{"--target"}}}},
+				{"--target", takesParsed("X,Y,Z", options.target, positionOf), "What the camera looks at; +y is up in the picture",
+				 needs("--eye")},
+				{"--fov", takesNumber(options.fov_y_deg, 0.01, 179.0),
+				 "Whole vertical angle of view in degrees (default: the camera's own; 60 with --eye or --world-to-camera)"},
+				{"--near", takesNumber(options.near_m, 1e-6, 1e6),
+				 "Near plane of the projection in metres (default: the camera's own, else 0.1); rays are not cut by it"},
+				{"--projection", takesMatrix(options.projection),
+				 "A projection of any kind instead of the camera's: OpenGL's x and y, any depth (reversed, infinite, orthographic, "
+				 "off-centre); 16 numbers, column by column",
+				 excludes("--fov or --near")},
+				{"--world-to-camera", takesMatrix(options.camera_from_world),
+				 "Where the camera stands, as a rotation and translation: 16 numbers, column by column; it looks down its -z",
+				 excludes("--camera or --eye")},
+				sizeRow(options, "1280x720"),
+				{"--allow-inside", takesFlag(options.allow_inside),
+				 "Accept a camera inside something solid, for levels whose faces are turned round"}});
 }
 
 void addGBufferChannels(CLI::App& app, GBufferImport& import)
@@ -257,10 +222,9 @@ void addGBufferChannels(CLI::App& app, GBufferImport& import)
 		{{"--depth", takesChoice(namesOf<DepthKind>(), import.depth),
 		  "What the depth channel holds: metres along the view direction (default), metres from the eye, or a depth buffer's 0 to "
 		  "1, whose far end is sky"},
-		 {"--clip",
-		  takesChoice(namesOf<ClipRange>(), import.clip),
+		 {"--clip", takesChoice(namesOf<ClipRange>(), import.clip),
 		  "z after the projection that a depth buffer's 0 to 1 stand for (default: minus-one-to-one, as in OpenGL)",
-		  {.needs = {{"--depth device"}}}},
+		  needs("--depth device")},
 		 {"--sky-depth", takesNumber(import.sky_depth_m, 1e-6, 1e30), "Depths from here on, in metres, are sky (default: 1e10)"},
 		 {"--depth-channel", takesText(import.depth_channel, "NAME"), "Depth channel (default: Z, or the one called depth)"},
 		 {"--normal-channels", takesText(import.normal_channels, "NAME"),
@@ -274,13 +238,9 @@ void addGBufferChannels(CLI::App& app, GBufferImport& import)
 void addGBufferImport(CLI::App& app, GBufferImport& import)
 {
 	addGBufferChannels(app, import);
-	const auto take_viewport = [&import](const std::string& name, const std::string& text)
-	{
-		import.viewport = viewportOf(name, text);
-	};
 	addOptions(app, {{"--normals", takesChoice(kNormalSources, import.normals_from_depth),
 					  "Normals of the file (default), or from the depth of five pixels"},
-					 {"--viewport", takesParsed("X,Y,W,H", take_viewport),
+					 {"--viewport", takesParsed("X,Y,W,H", import.viewport, viewportOf),
 					  "Only this rectangle of the file, in pixels from its upper left corner; the projection is the rectangle's"},
 					 {"--projection", takesMatrix(import.projection),
 					  "View to clip space, column by column (default: the file's attribute projection)"},
@@ -297,16 +257,31 @@ void checkGBufferImport(const GBufferImport& import)
 	}
 }
 
+OptionRow falloffUnitRow(std::optional<double>& unit_m)
+{
+	return {"--falloff-u", takesNumber(unit_m, 1e-9, 1e9), "u of --falloff alchemy, metres (default: a tenth of the radius)",
+			needs("--falloff alchemy", "both or none")};
+}
+
+double falloffUnit(const std::optional<double>& unit_m, double radius_m, Falloff falloff)
+{
+	if (std::isfinite(radius_m) && radius_m > 1e9)
+	{
+		refuseValue("--radius", numberText(radius_m), "metres from 0.000001 to 1000000000, or inf");
+	}
+	if (!unit_m && falloff == Falloff::alchemy && std::isinf(radius_m))
+	{
+		refuse("--falloff-u: found none, expected metres, since the radius is without end");
+	}
+	return unit_m.value_or(0.1 * radius_m);
+}
+
 void addLevelFacts(Facts& facts, const LoadedLevel& loaded)
 {
 	facts.text("level", loaded.level.name);
 	facts.whole("triangles", loaded.level.triangles.size());
-	std::vector<std::string> findings;
-	for (const Finding& finding : loaded.diagnosis.findings)
-	{
-		findings.push_back(finding.id + " " + std::to_string(finding.count));
-	}
-	facts.texts("findings", findings);
+	facts.texts("findings", mapped(loaded.diagnosis.findings,
+								   [](const Finding& finding) { return finding.id + " " + std::to_string(finding.count); }));
 }
 
 } // namespace nook

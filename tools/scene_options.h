@@ -7,6 +7,7 @@
 #include "scene/camera_choice.h"
 #include "scene/gbuffer.h"
 #include "scene/load.h"
+#include "scene/reference.h"
 
 #include <array>
 #include <string>
@@ -29,6 +30,12 @@ void addLevelOptions(CLI::App& app, LevelOptions& options);
 
 // kLoadOptions alone, for verbs whose file may be something else.
 void addLoadOptions(CLI::App& app, LoadSettings& load);
+
+inline constexpr std::array<std::string_view, 3> kFalloffs{"hard", "linear", "alchemy"}; // of Falloff, in its order
+OptionRow falloffUnitRow(std::optional<double>& unit_m);
+
+// The unit that is given, or that of the radius. Throws Error (usage) for a radius out of range, or where there is none.
+double falloffUnit(const std::optional<double>& unit_m, double radius_m, Falloff falloff);
 
 // Name, triangles, and the findings as "id count".
 void addLevelFacts(Facts& facts, const LoadedLevel& loaded);

@@ -9,6 +9,7 @@
 #include "bake/texture.h"
 #include "core/decimal.h"
 #include "core/image.h"
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/system.h"
 #include "core/text.h"
@@ -35,7 +36,6 @@ constexpr std::array<std::string_view, 7> kAllBakeFormats{".glb", ".gltf", ".csv
 constexpr std::array<std::string_view, 5> kBakeFormats{".glb", ".gltf", ".csv", ".npy", ".json"};
 constexpr std::array<std::string_view, 2> kTextureFormats{".glb", ".gltf"};
 constexpr std::array<std::string_view, 2> kProbeFormats{".ktx2", ".glsl"};
-constexpr std::array<std::string_view, 3> kBakeFalloffs{"hard", "linear", "alchemy"};        // of Falloff, in its order
 constexpr std::array<std::string_view, 2> kBakeFits{"surface", "points"};                    // of BakeFit
 constexpr std::array<std::string_view, 2> kBakeSides{"separate", "mean"};                    // of BakeSides
 constexpr std::array<std::string_view, 2> kBakeNormals{"geometric", "interpolated"};         // of NormalKind
@@ -118,24 +118,18 @@ void declare(CLI::App& app, BakeOptions& options)
 	addLevelOptions(app, options.level);
 	addOptions(
 		app,
-		{{"--radius",
-		  takesNumber(settings.radius_m, 1e-6, std::numeric_limits<double>::infinity()),
-		  "Metres that a ray reaches, to 1e9; inf: without end",
-		  {.required = true}},
-		 {"--falloff", takesChoice(kBakeFalloffs, settings.falloff),
+		{{"--radius", takesNumber(settings.radius_m, 1e-6, std::numeric_limits<double>::infinity()),
+		  "Metres that a ray reaches, to 1e9; inf: without end", kRequired},
+		 {"--falloff", takesChoice(kFalloffs, settings.falloff),
 		  "Weight of a surface at distance t: hard 1 (default), linear 1 - t/radius, alchemy u t / max(u, t)^2"},
-		 {"--falloff-u",
-		  takesNumber(options.falloff_u_m, 1e-9, 1e9),
-		  "u of --falloff alchemy, metres (default: a tenth of the radius)",
-		  {.needs = {{"--falloff alchemy", "both or none"}}}},
+		 falloffUnitRow(options.falloff_u_m),
 		 {"--rays", takesWhole(settings.rays, 1, kMaxSamples), "Rays a vertex, a texel or a probe (default 256)"},
 		 {"--fit", takesChoice(kBakeFits, settings.fit),
 		  "surface: values whose interpolation is nearest to rays all over the triangles (default); points: those at the vertices",
 		  ofVertices()},
-		 {"--normals",
-		  takesChoice(kBakeNormals, settings.normals),
+		 {"--normals", takesChoice(kBakeNormals, settings.normals),
 		  "Rays lie around the triangles' own normals (default) or around those of the vertices, interpolated",
-		  {.excludes = {{"--probes", "none, since probes have all normals"}}}},
+		  excludes("--probes", "none, since probes have all normals")},
 		 {"--max-error", takesNumber(settings.max_error, 1e-3, 1.0),
 		  "Splits triangles whose root mean square error is above that, and neighbours, so that no crack opens",
 		  ofVertices({{"--fit points", "--fit surface, whose error it is"}})},
@@ -163,14 +157,13 @@ void declare(CLI::App& app, BakeOptions& options)
 		  {.needs = {volumes}}},
 		 directionsRow(options.directions,
 					   {.needs = {volumes, {"--volumes-by " + maskMethod(), maskMethod(), "with another method"}}}),
-		 {"--texture",
-		  takesWhole(options.texture_px, kLeastTexture_px, kMostTexture_px),
+		 {"--texture", takesWhole(options.texture_px, kLeastTexture_px, kMostTexture_px),
 		  "Texels across of an occlusion texture, in place of values at vertices; by the level's second texture coordinates or by "
 		  "the first",
-		  {.excludes = {{"--probes"}}}},
+		  excludes("--probes")},
 		 {"--probes", takesNumber(options.probes_m, 1e-6, 1e9),
-		  "Metres between the probes of a grid, for what moves, in place of vertices: a texture (.ktx2) and its reader (.glsl)"}});
-	addSeed(app, settings.seed);
+		  "Metres between the probes of a grid, for what moves, in place of vertices: a texture (.ktx2) and its reader (.glsl)"},
+		 seedRow(settings.seed)});
 	addOutputs(app, options.outputs, kAllBakeFormats);
 	addRun(app, options.outputs, true);
 }
@@ -208,19 +201,11 @@ void settle(BakeOptions& options)
 	{
 		refuse("--radius: found 'inf', expected metres, since --falloff linear is a share of it");
 	}
-	if (std::isfinite(settings.radius_m) && settings.radius_m > 1e9)
-	{
-		refuseValue("--radius", numberText(settings.radius_m), "metres from 0.000001 to 1000000000, or inf");
-	}
 	if (options.outputs.share && settings.max_error > 0.0)
 	{
 		refuse("--share: found with --max-error, expected one of them, since what is split next depends on all so far");
 	}
-	if (!options.falloff_u_m && settings.falloff == Falloff::alchemy && std::isinf(settings.radius_m))
-	{
-		refuse("--falloff-u: found none, expected metres, since the radius is without end");
-	}
-	settings.falloff_u_m = options.falloff_u_m.value_or(0.1 * settings.radius_m);
+	settings.falloff_u_m = falloffUnit(options.falloff_u_m, settings.radius_m, settings.falloff);
 }
 
 void addSettings(Facts& facts, const BakeOptions& options)
@@ -233,7 +218,7 @@ void addSettings(Facts& facts, const BakeOptions& options)
 	{
 		facts.text("beside", volumesBy()[options.mask ? 1 : 0]);
 	}
-	facts.text("falloff", kBakeFalloffs[static_cast<std::size_t>(settings.falloff)]);
+	facts.text("falloff", kFalloffs[static_cast<std::size_t>(settings.falloff)]);
 	facts.number("radius_m", settings.radius_m);
 	if (settings.falloff == Falloff::alchemy)
 	{
@@ -244,9 +229,6 @@ void addSettings(Facts& facts, const BakeOptions& options)
 	if (!probes)
 	{
 		facts.text("normals", kBakeNormals[static_cast<std::size_t>(settings.normals)]);
-	}
-	if (!probes)
-	{
 		facts.text("to", options.to);
 	}
 	if (!probes && !texture)
@@ -279,11 +261,6 @@ void addCheck(Facts& facts, const BakeCheck& check, const std::string& where)
 
 void addResult(Facts& facts, const BakeOptions& options, const VertexBake& bake)
 {
-	double sum = 0.0;
-	for (const float value : bake.visibility)
-	{
-		sum += static_cast<double>(value);
-	}
 	if (bake.refined)
 	{
 		facts.whole("baked_triangles", bake.refined->triangles.size());
@@ -300,8 +277,7 @@ void addResult(Facts& facts, const BakeOptions& options, const VertexBake& bake)
 	facts.whole("buried_points", bake.buried);
 	facts.whole("shut_points", bake.shut);
 	facts.whole("rays", bake.rays);
-	facts.number(options.volumes.empty() ? "mean_visibility" : "mean_difference",
-				 sum / static_cast<double>(bake.visibility.size()));
+	facts.number(options.volumes.empty() ? "mean_visibility" : "mean_difference", meanOf(bake.visibility));
 	facts.number("rms_standard_error", bake.standard_error);
 	facts.line("bake: " + std::to_string(bake.visibility.size()) + " vertices, " + std::to_string(bake.rays) + " rays from " +
 			   std::to_string(bake.points) + " points (" + std::to_string(bake.buried) + " inside matter, " +
@@ -352,7 +328,7 @@ GltfBake bakeOf(const BakeOptions& options)
 	bake.record = {
 		{"to", options.to},
 		{"radius_m", std::isinf(settings.radius_m) ? nlohmann::ordered_json() : nlohmann::ordered_json(settings.radius_m)},
-		{"falloff", kBakeFalloffs[static_cast<std::size_t>(settings.falloff)]},
+		{"falloff", kFalloffs[static_cast<std::size_t>(settings.falloff)]},
 		{"rays", settings.rays},
 		{"version", NOOK_VERSION},
 		{"command", command}};
@@ -371,14 +347,8 @@ GltfBaked write(const BakeOptions& options, const BakeInput& input, const Level&
 				const RunSettings& how)
 {
 	std::vector<GltfPlace> places;
-	std::vector<std::string> outputs;
-	for (const std::string& path : options.outputs.files)
-	{
-		if (!isValues(path))
-		{
-			outputs.push_back(path);
-		}
-	}
+	std::vector<std::string> outputs = options.outputs.files;
+	std::erase_if(outputs, isValues);
 	outputs.resize(std::max<std::size_t>(outputs.size(), 1), "-"); // its size is reported in any case
 	std::optional<GltfFile> file;
 	if (input.in_place)
@@ -533,12 +503,7 @@ Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& fact
 	{
 		return {};
 	}
-	std::vector<uint8_t> rgb;
-	rgb.reserve(3 * bake.values.size());
-	for (const uint8_t value : bake.values)
-	{
-		rgb.insert(rgb.end(), {value, value, value});
-	}
+	std::vector<uint8_t> rgb = listOf(3 * bake.values.size(), [&bake](std::size_t i) { return bake.values[i / 3]; });
 	const std::string png = pngBytes(bake.size_px, bake.size_px, rgb, {});
 	give<uint8_t>("texels", bake.values, {static_cast<std::size_t>(bake.size_px), static_cast<std::size_t>(bake.size_px)});
 	GltfBake in = bakeOf(options);
@@ -660,11 +625,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 	{
 		files.add(options.outputs.files[i], made.bytes[i]);
 	}
-	addSide(files, options.outputs, facts.json(), read);
-	if (options.outputs.json.empty() && isStdoutFree(options.outputs))
-	{
-		files.add("-", facts.lines());
-	}
+	addSide(files, options.outputs, facts.json(), read, options.outputs.json.empty() ? facts.lines() : "");
 	files.commit();
 	for (const std::string& warning : made.warnings)
 	{

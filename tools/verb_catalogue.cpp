@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "emit/catalogue.h"
 #include "version.h"
@@ -48,12 +49,7 @@ std::string pathOf(const CatalogueOptions& options, const std::string& below)
 // Neither the statement nor the log is one of the catalogue's files.
 void checkPlaces(const CatalogueOptions& options, const std::vector<CatalogueEntry>& entries)
 {
-	std::vector<std::string> paths;
-	for (const CatalogueEntry& entry : entries)
-	{
-		paths.push_back(pathOf(options, entry.path));
-	}
-	checkNames(options.outputs, paths);
+	checkNames(options.outputs, mapped(entries, [&options](const CatalogueEntry& entry) { return pathOf(options, entry.path); }));
 }
 
 void makeFolders(const CatalogueOptions& options, const std::vector<CatalogueEntry>& entries, NewFolders& folders)
@@ -103,21 +99,15 @@ void run(CatalogueOptions& options, VerbProgress& progress)
 	}
 	const std::vector<std::string> different = options.check ? differences(options, files) : std::vector<std::string>{};
 
+	Facts facts = verbFacts("catalogue");
+	facts.whole("files", files.size());
+	facts.texts("different", different);
 	OutputSet outputs;
-	if (!options.check)
+	for (const CatalogueFile& file : options.check ? std::vector<CatalogueFile>{} : files)
 	{
-		for (const CatalogueFile& file : files)
-		{
-			outputs.add(pathOf(options, file.path), file.bytes);
-		}
+		outputs.add(pathOf(options, file.path), file.bytes);
 	}
-	if (!options.outputs.json.empty())
-	{
-		Facts facts = verbFacts("catalogue");
-		facts.whole("files", files.size());
-		facts.texts("different", different);
-		outputs.add(options.outputs.json, facts.json());
-	}
+	addSide(outputs, options.outputs, facts.json(), {});
 	outputs.commit();
 	if (!different.empty())
 	{
@@ -130,22 +120,17 @@ void run(CatalogueOptions& options, VerbProgress& progress)
 void declare(CLI::App& app, CatalogueOptions& options)
 {
 	const OptionRule domain{"--domain", "--domain as well", "without --domain, which makes the whole catalogue"};
-	addOptions(app, {{"--domain", takesChoice(patternDomains(), options.domain), "One domain (default: all, with tiles)"},
-					 {"--counts",
-					  [&options](CLI::App& verb, const std::string& name, const std::string& help)
-					  { return addCounts(verb, name, options.counts, kMaxCatalogueCount, help); },
-					  "Numbers of samples (default 1-64)",
-					  {.needs = {domain}}},
-					 {"--tiles",
-					  takesFlag(options.tiles),
-					  "Disk: also the 4 x 4 tiles of the free patterns with 4 to 16 lines",
-					  {.needs = {domain, {"--domain disk", "--domain disk", "with another domain"}}}},
-					 {"--check", takesFlag(options.check),
-					  "Writes nothing; exit code 7 when a file there differs from what would be written"},
-					 {"-o,--output",
-					  takesText(options.folder, "FOLDER"),
-					  "The catalogue's folder; DOMAIN/DOMAIN_NNN.json are made in it",
-					  {.required = true}}});
+	addOptions(
+		app,
+		{{"--domain", takesChoice(patternDomains(), options.domain), "One domain (default: all, with tiles)"},
+		 {"--counts", takesCounts(options.counts, kMaxCatalogueCount), "Numbers of samples (default 1-64)", {.needs = {domain}}},
+		 {"--tiles",
+		  takesFlag(options.tiles),
+		  "Disk: also the 4 x 4 tiles of the free patterns with 4 to 16 lines",
+		  {.needs = {domain, {"--domain disk", "--domain disk", "with another domain"}}}},
+		 {"--check", takesFlag(options.check), "Writes nothing; exit code 7 when a file there differs from what would be written"},
+		 {"-o,--output", takesText(options.folder, "FOLDER"), "The catalogue's folder; DOMAIN/DOMAIN_NNN.json are made in it",
+		  kRequired}});
 	addJson(app, options.outputs.json);
 	addRun(app, options.outputs, true);
 }

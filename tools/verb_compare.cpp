@@ -46,7 +46,7 @@ struct CompareOptions
 
 void declare(CLI::App& app, CompareOptions& options)
 {
-	const OptionRules visibility{.excludes = {{"--bent", "one of them", "with --bent, of which it says nothing"}}};
+	const OptionRules visibility = excludes("--bent", "one of them", "with --bent, of which it says nothing");
 	const auto also = [&visibility](const std::string& needed, const std::string& expected)
 	{
 		OptionRules rules = visibility;
@@ -55,11 +55,8 @@ void declare(CLI::App& app, CompareOptions& options)
 	};
 	addOptions(
 		app,
-		{{"TEST", takesText(options.test, "TEST"), "Visibility to be judged: any image file", {.required = true}},
-		 {"REFERENCE",
-		  takesText(options.reference, "REFERENCE"),
-		  "Visibility that is taken for true, of the same size",
-		  {.required = true}},
+		{{"TEST", takesText(options.test, "TEST"), "Visibility to be judged: any image file", kRequired},
+		 {"REFERENCE", takesText(options.reference, "REFERENCE"), "Visibility that is taken for true, of the same size", kRequired},
 		 {"--channel", takesText(options.channel, "NAME"),
 		  "Channel of both files (default: visibility, else the only one, else Y, else R, G, B where they are gray)", visibility},
 		 {"--mask", takesText(options.mask, "GBUFFER.exr"),
@@ -293,9 +290,7 @@ void runBent(const CompareOptions& options)
 	const BentImage reference = bentOf(imageOf(options.reference), options.reference);
 	const std::vector<uint8_t> counted = readMask(options.mask, reference);
 	const BentAngles angles = anglesBetween(test, reference, counted);
-	OutputSet files;
-	addSummary(files, options.outputs, bentSummary(options, test, reference, angles), bentTable(test, reference, angles));
-	files.commit();
+	writeOutputs(options.outputs, {}, bentSummary(options, test, reference, angles), {}, bentTable(test, reference, angles));
 	if (options.max_error && angles.mean_deg > *options.max_error)
 	{
 		throw Error(ExitCode::difference, options.test + ": mean angle: found " + doubleText(angles.mean_deg) +
@@ -325,8 +320,8 @@ void run(CompareOptions& options, VerbProgress& progress)
 	{
 		files.add(options.diff, differenceOf(options, test, reference));
 	}
-	addSummary(files, options.outputs, summaryOf(options, test, reference, comparison, uncertainty, verdict),
-			   table(test, reference, comparison, uncertainty, options.settings));
+	addSide(files, options.outputs, summaryOf(options, test, reference, comparison, uncertainty, verdict), {},
+			table(test, reference, comparison, uncertainty, options.settings));
 	files.commit();
 	if (verdict.exceeded)
 	{

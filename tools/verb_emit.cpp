@@ -2,7 +2,8 @@
 // nook emit: methods and their patterns → one GLSL module, and the C++ header or JavaScript of its uniform block.
 #include "feature_options.h"
 
-#include "core/file.h"
+#include "core/decimal.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "core/text.h"
 #include "emit/module.h"
@@ -11,8 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <filesystem>
 
 namespace nook
 {
@@ -112,14 +111,13 @@ std::string domainsText()
 void declare(CLI::App& app, EmitOptions& options)
 {
 	ModuleSettings& settings = options.settings;
-	const OptionRules screen{.excludes = {{"--methods " + volumeMethods("|"), "a screen-space method"}}};
+	const OptionRules screen = excludes("--methods " + volumeMethods("|"), "a screen-space method");
 	addOptions(
 		app,
-		{{"--methods",
-		  takesText(options.methods, "LIST"),
+		{{"--methods", takesText(options.methods, "LIST"),
 		  "What to emit, with commas between: " + methodNames(isModule) + "; or alone: " + methodNames(isVolumes, " or ") +
 			  ", which draw the files of nook volumes",
-		  {.required = true}},
+		  kRequired},
 		 {"--patterns", takesText(options.patterns, "FILES"),
 		  "Samples of each method but " + methodNames([](const MethodRow& row) { return isModule(row) && !row.domain; }, " and ") +
 			  ", in the same order, with commas between: patterns or tiles of nook. " + domainsText(),
@@ -151,7 +149,7 @@ void declare(CLI::App& app, EmitOptions& options)
 		  screen},
 		 {"--namespace", takesText(settings.header_namespace, "NAME"),
 		  "Of the header's tiles and settings: for programs with several modules of a method (default: none)", screen},
-		 directionsRow(options.directions, {.needs = {{"--methods " + maskMethod(), maskMethod(), "with another method"}}}),
+		 directionsRow(options.directions, needs("--methods " + maskMethod(), maskMethod(), "with another method")),
 		 recipeRow(options.recipe, screen)});
 	addOptions(app, featureOptions(
 						kInEmit, [](const FeatureRow&) { return true; }, settings.shade, screen));
@@ -195,13 +193,12 @@ std::vector<std::size_t> countsOf(const EmitOptions& options, std::size_t method
 	std::vector<std::size_t> counts;
 	for (const std::string& text : partsOf(options.counts))
 	{
-		std::size_t count = 0;
-		const std::from_chars_result read = std::from_chars(text.data(), text.data() + text.size(), count);
-		if (read.ec != std::errc{} || read.ptr != text.data() + text.size() || count < 1 || count > kMaxCount)
+		const std::optional<std::size_t> count = numberFrom<std::size_t>(text);
+		if (!count || *count < 1 || *count > kMaxCount)
 		{
 			refuseValue("--counts", text, "whole numbers from 1 to 4096, one a method");
 		}
-		counts.push_back(count);
+		counts.push_back(*count);
 	}
 	if (!counts.empty() && counts.size() != methods)
 	{
@@ -331,11 +328,8 @@ std::string featuresOf(const EmitOptions& options, bool of_header)
 // The command that makes the files again, less their folders.
 std::string emitCommand(const EmitOptions& options, const std::vector<std::string>& patterns, bool glsl)
 {
-	std::string names;
-	for (const std::string& path : patterns)
-	{
-		names += (names.empty() ? "" : ",") + nativePath(path).filename().string();
-	}
+	const std::string names =
+		joinedText(patterns, ",", [](const std::string& path) { return nativePath(path).filename().string(); });
 	const ModuleSettings& settings = options.settings;
 	std::string command = "nook emit --methods " + options.methods + (names.empty() ? "" : " --patterns " + names);
 	command += options.counts.empty() ? "" : " --counts " + options.counts;
@@ -409,7 +403,6 @@ void emitVolumes(const EmitOptions& options, bool mask)
 	command += options.given("--directions") ? " --directions " + std::to_string(options.directions) : "";
 	command += " --glsl " + target_name;
 	const AovTextSettings text{target == GlslTarget::gl430, mask ? options.directions : 0, options.settings.device_depth};
-	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
 		if (formatOf(path, kModuleFormats) == ".hlsl" || formatOf(path, kModuleFormats) == ".wgsl" || !isShader(path))
@@ -420,13 +413,15 @@ void emitVolumes(const EmitOptions& options, bool mask)
 															 : "another file") +
 				   ", expected a .glsl file alone: nook_volumes_draw.h fills the block");
 		}
-		files.add(path, volumesGlsl(text, {command, NOOK_VERSION, {}, {}}));
 	}
 	Facts facts = verbFacts("emit");
 	facts.text("command", command);
 	facts.text("method", options.methods);
-	addSide(files, options.outputs, facts.json(), {});
-	files.commit();
+	writeOutputs(options.outputs,
+				 [&](const std::string&) {
+					 return volumesGlsl(text, {command, NOOK_VERSION, {}, {}});
+				 },
+				 facts.json(), {});
 }
 
 void run(EmitOptions& options, VerbProgress&)
@@ -476,22 +471,20 @@ void run(EmitOptions& options, VerbProgress&)
 	};
 	const std::string shader = hasLanguage(options) ? moduleGlsl(settings, contextOf(true)) : "";
 	const std::string embedded = isHlsl(options) ? "" : shader; // in JavaScript
-	OutputSet files;
-	for (const std::string& path : options.outputs.files)
+	const auto bytesOf = [&](const std::string& path)
 	{
 		const std::string_view format = formatOf(path, kModuleFormats);
-		files.add(path, isShader(path)      ? shader
-						: isScript(path)    ? moduleScript(settings, contextOf(!embedded.empty()), embedded)
-						: format == ".cs"   ? moduleSharp(settings, contextOf(false))
-						: format == ".py"   ? modulePython(settings, contextOf(false))
-						: format == ".json" ? moduleJson(settings, contextOf(false))
-											: moduleHeader(settings, contextOf(false)));
-	}
+		return isShader(path)      ? shader
+			   : isScript(path)    ? moduleScript(settings, contextOf(!embedded.empty()), embedded)
+			   : format == ".cs"   ? moduleSharp(settings, contextOf(false))
+			   : format == ".py"   ? modulePython(settings, contextOf(false))
+			   : format == ".json" ? moduleJson(settings, contextOf(false))
+								   : moduleHeader(settings, contextOf(false));
+	};
 	Facts facts = verbFacts("emit");
 	facts.text("command", emitCommand(options, patterns, hasLanguage(options)));
 	facts.items("methods", std::move(items));
-	addSide(files, options.outputs, facts.json(), inputsOf(options, patterns));
-	files.commit();
+	writeOutputs(options.outputs, bytesOf, facts.json(), inputsOf(options, patterns));
 }
 
 } // namespace

@@ -4,8 +4,8 @@
 #include "scene_options.h"
 
 #include "core/decimal.h"
-#include "core/error.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "core/text.h"
 #include "core/work_units.h"
 #include "methods/method_table.h"
@@ -14,7 +14,6 @@
 #include "study/fit.h"
 #include "version.h"
 
-#include <algorithm>
 #include <array>
 
 namespace nook
@@ -94,20 +93,8 @@ std::vector<MethodRecipe> startsOf(const FitOptions& options)
 std::string fitCommand(const FitOptions& options)
 {
 	const FitSettings& settings = options.settings;
-	std::string command = "nook fit";
-	const auto words = [&command](const std::vector<std::string>& levels)
-	{
-		for (const std::string& level : levels)
-		{
-			command += " " + shellWord(level);
-		}
-	};
-	words(options.levels);
-	if (!options.held_out.empty())
-	{
-		command += " --held-out";
-		words(options.held_out);
-	}
+	std::string command = "nook fit " + joinedText(options.levels, " ", shellWord);
+	command += options.held_out.empty() ? "" : " --held-out " + joinedText(options.held_out, " ", shellWord);
 	command += options.methods.empty() ? "" : " --methods " + options.methods;
 	command += options.start.empty() ? "" : " --start " + shellWord(options.start);
 	command += settings.radius_m > 0.0 ? " --radius " + numberText(settings.radius_m) : "";
@@ -162,22 +149,13 @@ void run(FitOptions& options, VerbProgress& progress)
 	{
 		return;
 	}
-	OutputSet files;
 	const std::string json = fitJson(report, fitCommand(options), NOOK_VERSION);
-	for (const std::string& path : options.outputs.files)
-	{
-		files.add(path, json);
-	}
 	if (!options.start.empty())
 	{
 		read.push_back(options.start);
 	}
-	addSide(files, options.outputs, json, read);
-	if (isStdoutFree(options.outputs))
-	{
-		files.add("-", linesOf(report));
-	}
-	files.commit();
+	writeOutputs(
+		options.outputs, [&](const std::string&) { return json; }, json, read, linesOf(report));
 }
 
 } // namespace

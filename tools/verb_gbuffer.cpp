@@ -11,7 +11,6 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
-#include <span>
 
 namespace nook
 {
@@ -37,10 +36,8 @@ struct GBufferOptions
 
 void declare(CLI::App& app, GBufferOptions& options)
 {
-	addOptions(app, {{"LEVEL",
-					  takesText(options.level.level, "LEVEL"),
-					  "A level (.gltf .glb .obj .fbx .ply .stl), builtin:NAME, or a G-buffer of an engine (.exr)",
-					  {.required = true}}});
+	addOptions(app, {{"LEVEL", takesText(options.level.level, "LEVEL"),
+					  "A level (.gltf .glb .obj .fbx .ply .stl), builtin:NAME, or a G-buffer of an engine (.exr)", kRequired}});
 	addLoadOptions(app, options.level.load);
 	addCameraOptions(app, options.camera);
 	addGBufferChannels(app, options.import);
@@ -111,18 +108,14 @@ void convert(const GBufferOptions& options, VerbProgress& progress)
 	progress.start("gbuffer", options.outputs.threads, options.outputs.progress);
 	const GBuffer gbuffer = readGBuffer(options.level.level, import);
 	const std::string name = std::filesystem::path(options.level.level).filename().string();
-	OutputSet files;
-	for (const std::string& path : options.outputs.files)
-	{
-		files.add(path, gbufferBytes(gbuffer, notesOf(name, "given", import.normals_from_depth ? "from-depth" : "given")));
-	}
+	const Notes notes = notesOf(name, "given", import.normals_from_depth ? "from-depth" : "given");
 	Facts facts = verbFacts("gbuffer");
 	facts.text("gbuffer", name);
 	PictureFacts picture;
 	picture.add(gbuffer);
 	picture.addTo(facts);
-	addSide(files, options.outputs, facts.json(), {options.level.level});
-	files.commit();
+	writeOutputs(options.outputs, [&](const std::string&) { return gbufferBytes(gbuffer, notes); }, facts.json(),
+				 {options.level.level});
 }
 
 void cast(const GBufferOptions& options, VerbProgress& progress)
@@ -130,13 +123,8 @@ void cast(const GBufferOptions& options, VerbProgress& progress)
 	refuseGiven(*options.app, kChannelOptions, "with '" + options.level.level + "', expected a G-buffer (.exr)");
 	checkCameras(options.camera);
 	const auto count = static_cast<std::size_t>(pictureCount(options.camera));
-	Outputs outputs = options.outputs;
-	outputs.files.clear();
-	for (const std::string& file : options.outputs.files)
-	{
-		const std::vector<std::string> files = pictureFiles(file, static_cast<int>(count));
-		outputs.files.insert(outputs.files.end(), files.begin(), files.end());
-	}
+	const Outputs outputs =
+		expanded(options.outputs, [count](const std::string& file) { return pictureFiles(file, static_cast<int>(count)); });
 	checkOutputs(outputs, kGBufferFormats, {options.level.level});
 	const RunSettings settings = progress.start("gbuffer", options.outputs.threads, options.outputs.progress);
 	const std::shared_ptr<const LoadedLevel> shared = levelOf(options.level.level, options.level.load, settings);

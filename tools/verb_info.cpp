@@ -18,7 +18,6 @@
 #include "volume/volume_glb.h"
 
 #include <array>
-#include <filesystem>
 
 namespace nook
 {
@@ -290,12 +289,12 @@ void run(InfoOptions& options, VerbProgress& progress)
 	const bool tables = options.methods || !options.features_of.empty();
 	if (tables != options.file.empty())
 	{
-		throw Error(ExitCode::usage, tables ? "FILE: found with --methods or --options, expected one of them"
-											: "FILE is required, expected what 'nook info --help' lists");
+		refuse(tables ? "FILE: found with --methods or --options, expected one of them"
+					  : "FILE is required, expected what 'nook info --help' lists");
 	}
 	if (tables && !options.outputs.progress.empty())
 	{
-		throw Error(ExitCode::usage, "--progress: found with --methods or --options, which take no time, expected FILE");
+		refuse("--progress: found with --methods or --options, which take no time, expected FILE");
 	}
 	if (tables)
 	{
@@ -318,9 +317,7 @@ void run(InfoOptions& options, VerbProgress& progress)
 	{
 		describePlain(options, settings, facts);
 	}
-	OutputSet files;
-	addSummary(files, options.outputs, facts.json(), facts.lines());
-	files.commit();
+	writeOutputs(options.outputs, {}, facts.json(), {}, facts.lines());
 }
 
 void declare(CLI::App& app, InfoOptions& options)

@@ -4,6 +4,7 @@
 
 #include "core/decimal.h"
 #include "core/error.h"
+#include "core/lists.h"
 #include "scene/camera_choice.h"
 #include "scene/level.h"
 #include "scene/level_glb.h"
@@ -16,7 +17,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <filesystem>
 
 namespace nook
@@ -62,9 +62,8 @@ std::vector<PlacedLevel> placesOf(const ConvertOptions& options)
 {
 	if (!options.moves.empty() && options.moves.size() != options.levels.size())
 	{
-		throw Error(ExitCode::usage, "--move: found " + std::to_string(options.moves.size()) + " for " +
-										 std::to_string(options.levels.size()) +
-										 " levels, expected one for each level, in their order");
+		refuse("--move: found " + std::to_string(options.moves.size()) + " for " + std::to_string(options.levels.size()) +
+			   " levels, expected one for each level, in their order");
 	}
 	std::vector<PlacedLevel> places;
 	for (const std::string& name : options.levels)
@@ -79,25 +78,13 @@ constexpr unsigned kMostCells = 4096;
 // "4x3" or "4x2x3": along x and z, or x, y and z.
 glm::uvec3 gridOfText(const std::string& name, const std::string& text)
 {
-	std::vector<unsigned> counts;
-	const char* at = text.data();
-	const char* const end = at + text.size();
-	bool good = true;
-	while (good && counts.size() < 3)
-	{
-		const std::from_chars_result result = std::from_chars(at, end, counts.emplace_back());
-		good = result.ec == std::errc{} && counts.back() >= 1 && counts.back() <= kMostCells;
-		at = result.ptr;
-		if (at == end)
-		{
-			break;
-		}
-		good = good && *at++ == 'x';
-	}
+	const auto counts = mapped(partsOf(text, 'x'), [](const std::string& part)
+							   { return std::min(numberFrom<unsigned>(part).value_or(0), kMostCells + 1); });
 	const glm::uvec3 grid = counts.size() == 2   ? glm::uvec3(counts[0], 1, counts[1])
 							: counts.size() == 3 ? glm::uvec3(counts[0], counts[1], counts[2])
 												 : glm::uvec3(0);
-	if (!good || at != end || grid.x == 0 || uint64_t{grid.x} * grid.y * grid.z > kMostCells)
+	const uint64_t cells = uint64_t{grid.x} * grid.y * grid.z;
+	if (cells < 1 || cells > kMostCells)
 	{
 		refuseValue(name, text, "XxZ or XxYxZ, at most 4096 cells: 4x3 or 4x2x3");
 	}
@@ -111,12 +98,7 @@ std::string cornerText(glm::dvec3 p)
 
 std::size_t aroundOf(const Level& level)
 {
-	std::size_t count = 0;
-	for (const Mesh& mesh : level.meshes)
-	{
-		count += mesh.around ? mesh.triangle_count : 0;
-	}
-	return count;
+	return sumOver(level.meshes, [](const Mesh& mesh) { return mesh.around ? mesh.triangle_count : 0; });
 }
 
 // The files that `-o` stands for: itself, or NAME-X-Z.glb for each cell of a grid, NAME-X-Y-Z.glb where it is higher than one.
@@ -191,13 +173,8 @@ void cutCells(const Level& level, const CellOptions& options, Facts& facts, cons
 // Parts of the level, a file each that is not empty.
 void runCells(const ConvertOptions& options, VerbProgress& progress)
 {
-	Outputs outputs = options.outputs;
-	outputs.files.clear();
-	for (const std::string& file : options.outputs.files)
-	{
-		const std::vector<std::string> files = cellFiles(options.cells, file);
-		outputs.files.insert(outputs.files.end(), files.begin(), files.end());
-	}
+	const Outputs outputs =
+		expanded(options.outputs, [&options](const std::string& file) { return cellFiles(options.cells, file); });
 	checkOutputs(outputs, kLevelFormats, options.levels);
 	const RunSettings settings = progress.start("level", options.outputs.threads, options.outputs.progress);
 	const LoadedLevel loaded = loadLevels(placesOf(options), options.load, settings);
@@ -250,20 +227,16 @@ void run(ConvertOptions& options, VerbProgress& progress)
 	{
 		addCameras(loaded.level, options.cameras, settings);
 	}
-	OutputSet files;
+	std::string bytes;
 	if (!options.outputs.files.empty())
 	{
 		const ProgressCounter stage(settings.progress, "file");
-		const std::string bytes = levelGlb(loaded.level, "nook " NOOK_VERSION);
-		for (const std::string& path : options.outputs.files)
-		{
-			files.add(path, bytes);
-		}
+		bytes = levelGlb(loaded.level, "nook " NOOK_VERSION);
 	}
 	Facts facts = verbFacts("level");
 	addLevelFacts(facts, loaded);
-	addSide(files, options.outputs, facts.json(), loaded.level.files);
-	files.commit();
+	writeOutputs(
+		options.outputs, [&bytes](const std::string&) { return bytes; }, facts.json(), loaded.level.files);
 }
 
 void declare(CLI::App& app, ConvertOptions& options)
@@ -277,36 +250,21 @@ void declare(CLI::App& app, ConvertOptions& options)
 		}
 		options.levels.push_back(text);
 	};
-	const auto take_move = [&options](const std::string& name, const std::string& text)
-	{
-		options.moves.push_back(positionOf(name, text));
-	};
-	const auto take_box = [&cells](const std::string& name, const std::string& text)
-	{
-		cells.box = boxOf(name, text);
-	};
-	const auto take_grid = [&cells](const std::string& name, const std::string& text)
-	{
-		cells.grid = gridOfText(name, text);
-	};
-	addOptions(app, {{"LEVEL",
-					  takesEach("LEVEL", take_level),
-					  "Levels (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME, which become one",
-					  {.required = true}}});
+	addOptions(app, {{"LEVEL", takesEach("LEVEL", take_level),
+					  "Levels (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME, which become one", kRequired}});
 	addLoadOptions(app, options.load);
 	addOptions(
 		app,
-		{{"--move", takesEach("X,Y,Z", take_move), "Moves a level by so many metres; as often as there are levels, in their order"},
-		 {"--cell", takesParsed("X,Y,Z,X,Y,Z", take_box),
+		{{"--move", takesEach("X,Y,Z", options.moves, positionOf),
+		  "Moves a level by so many metres; as often as there are levels, in their order"},
+		 {"--cell", takesParsed("X,Y,Z,X,Y,Z", cells.box, boxOf),
 		  "The part of the level in a box, metres: triangles by their centre, and their surroundings, marked as such"},
-		 {"--cells",
-		  takesParsed("XxZ", take_grid),
+		 {"--cells", takesParsed("XxZ", cells.grid, gridOfText),
 		  "All of the level as such cells of one size, so many along x and z, or x, y and z: a file each, NAME-0-0.glb and so on",
-		  {.excludes = {{"--cell"}}}},
-		 {"--around",
-		  takesNumber(cells.around_m, 0.0, 1e9),
+		  excludes("--cell")},
+		 {"--around", takesNumber(cells.around_m, 0.0, 1e9),
 		  "Metres that a cell's surroundings reach: what rays or volumes reach in it at least",
-		  {.needs = {{"--cell or --cells", "one of them"}}}},
+		  needs("--cell or --cells", "one of them")},
 		 {"--cameras", takesWhole(options.cameras, 1, 64, "K"),
 		  "Adds the K most informative views, as --camera auto:K of other verbs"}});
 	addOutputs(app, options.outputs, kLevelFormats);

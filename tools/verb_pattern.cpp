@@ -26,11 +26,9 @@ void declare(CLI::App& app, PatternOptions& options)
 	Recipe& recipe = options.recipe;
 	addOptions(
 		app,
-		{{"--domain",
-		  takesChoice(patternDomains(), recipe.domain),
-		  "Line samples in the disk, point samples in the ball, directions, or cosine-weighted directions",
-		  {.required = true}},
-		 {"--count", takesWhole(recipe.count, 1, kMaxCount), "Samples, 1 to 4096", {.required = true}},
+		{{"--domain", takesChoice(patternDomains(), recipe.domain),
+		  "Line samples in the disk, point samples in the ball, directions, or cosine-weighted directions", kRequired},
+		 {"--count", takesWhole(recipe.count, 1, kMaxCount), "Samples, 1 to 4096", kRequired},
 		 {"--centre", takesFlag(recipe.centre), "Disk and ball: a sample at the centre"},
 		 {"--symmetric", takesFlag(recipe.symmetric),
 		  "Not hemisphere: p and -p with equal weights; a centre where the count is odd"},
@@ -45,12 +43,11 @@ void declare(CLI::App& app, PatternOptions& options)
 		 {"--order", takesChoice(namesOf<Order>(), recipe.order),
 		  "As it comes (default), every prefix good, or neighbours together"},
 		 {"--starts", takesWhole(recipe.starts, 1, 100000),
-		  "Independent starting sets, the best is kept (default: by method and count)"}});
-	addSeed(app, recipe.seed);
-	addOptions(
-		app, {{"--exponent", takesNumber(recipe.exponent, 0.1, 64.0),
-			   "Sphere: repulsion by the energy of d^-X (1: Thomson's problem); means --method electro"},
-			  {"--name", takesText(options.name, "IDENT"), "Stem of the identifiers in source files (default: from the options)"}});
+		  "Independent starting sets, the best is kept (default: by method and count)"},
+		 seedRow(recipe.seed),
+		 {"--exponent", takesNumber(recipe.exponent, 0.1, 64.0),
+		  "Sphere: repulsion by the energy of d^-X (1: Thomson's problem); means --method electro"},
+		 {"--name", takesText(options.name, "IDENT"), "Stem of the identifiers in source files (default: from the options)"}});
 	addOutputs(app, options.outputs, patternFormats());
 	addRun(app, options.outputs);
 }
@@ -71,19 +68,17 @@ void run(PatternOptions& options, VerbProgress& progress)
 	const Quality quality = measurePattern(pattern, settings, options.recipe.exponent);
 	const EmitContext context{patternCommand(options.recipe), NOOK_VERSION, options.name, ""};
 
-	OutputSet files;
-	for (const std::string& path : options.outputs.files)
-	{
-		files.add(path, patternBytes(formatOf(path, patternFormats()), pattern, &options.recipe, quality, context));
-	}
 	Facts facts = verbFacts("pattern");
 	facts.text("command", context.command);
 	facts.text("domain", nameOf(pattern.domain));
 	facts.whole("count", pattern.count());
 	facts.measures("quality", measuresOf(quality));
 	giveSamples({&pattern, 1}, {pattern.count()});
-	addSide(files, options.outputs, facts.json(), {});
-	files.commit();
+	const auto bytesOf = [&](const std::string& path)
+	{
+		return patternBytes(formatOf(path, patternFormats()), pattern, &options.recipe, quality, context);
+	};
+	writeOutputs(options.outputs, bytesOf, facts.json(), {});
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "core/text.h"
 #include "farm/plan.h"
@@ -133,11 +134,7 @@ struct ParsedCommand
 	std::optional<double> number(const std::string& option) const
 	{
 		const std::vector<std::string> found = values(option);
-		double value = 0.0;
-		return !found.empty() &&
-					   readDecimal(found.front().data(), found.front().data() + found.front().size(), value).ec == std::errc{}
-				   ? std::optional(value)
-				   : std::nullopt;
+		return found.empty() ? std::nullopt : numberFrom<double>(found.front());
 	}
 };
 
@@ -215,11 +212,7 @@ double trianglesOf(const std::string& folder, const std::string& level)
 	{
 		return trianglesOfFile(nativePath(level).extension().string(), bytesOf(folder, level));
 	}
-	const std::size_t colon = level.rfind(':');
-	double triangles = 0.0;
-	const char* const end = level.data() + level.size();
-	const bool sized = readDecimal(level.data() + colon + 1, end, triangles).ec == std::errc{};
-	return sized ? triangles : 10000.0; // as many as the largest has
+	return numberFrom<double>(level.substr(level.rfind(':') + 1)).value_or(10000.0); // as many as the largest has
 }
 
 constexpr double kVerticesPerTriangle = 0.75; // with values of their own, as in Sponza
@@ -246,14 +239,8 @@ WorkFacts factsOf(const ParsedCommand& parsed, const std::string& folder, const 
 	}
 	for (const std::string& size : parsed.values("--size"))
 	{
-		const std::size_t x = size.find('x');
-		double width = 0.0;
-		double height = 0.0;
-		if (x != std::string::npos && readDecimal(size.data(), size.data() + x, width).ec == std::errc{} &&
-			readDecimal(size.data() + x + 1, size.data() + size.size(), height).ec == std::errc{})
-		{
-			facts.pixels = width * height;
-		}
+		const glm::ivec2 pixels_of = sizeOf("--size", size);
+		facts.pixels = static_cast<double>(pixels_of.x) * pixels_of.y;
 	}
 	facts.rays = parsed.number("--rays").value_or(256.0);
 	const auto given = [&parsed](std::initializer_list<const char*> options)
@@ -357,17 +344,14 @@ Plan planOfCommand(const PlanOptions& options)
 	PixelsOf pixels;
 	PlanCommand command =
 		planCommandOf(options.words, here, {"job", {}, options.shares, options.minutes, options.mebibytes}, pixels);
-	std::string title = "nook";
-	for (const std::string& word : options.words)
-	{
-		title += " " + word;
-	}
 	for (const std::string& output : command.outputs)
 	{
 		checkWritable(output);
 	}
-	return planOf({std::move(command)}, {title, NOOK_VERSION, options.program, relativeTo(here, folder), options.engine, {}, {}},
-				  relativeTo(folder, here));
+	return planOf(
+		{std::move(command)},
+		{"nook " + joinedText(options.words, " "), NOOK_VERSION, options.program, relativeTo(here, folder), options.engine, {}, {}},
+		relativeTo(folder, here));
 }
 
 // A list of levels, whose steps run in the folder of -o. The plan is in its folder `plan`.
@@ -418,12 +402,8 @@ std::string durationText(double seconds)
 
 double coreSeconds(const Plan& plan)
 {
-	double sum = 0.0;
-	for (const PlanGroup& group : plan.groups)
-	{
-		sum += group.needs.seconds * group.needs.threads * static_cast<double>(group.count);
-	}
-	return sum;
+	return sumOver(plan.groups, [](const PlanGroup& group)
+				   { return group.needs.seconds * group.needs.threads * static_cast<double>(group.count); });
 }
 
 std::string planText(const Plan& plan)
@@ -471,13 +451,6 @@ void addPlanFacts(Facts& summary, const Plan& plan)
 	summary.items("groups", groups);
 }
 
-void tell(const Outputs& outputs, const Facts& summary, const std::string& text)
-{
-	OutputSet files;
-	addSummary(files, outputs, summary.json(), text);
-	files.commit();
-}
-
 void writePlan(const Plan& plan, const std::string& folder)
 {
 	const fs::path file = nativePath(folder) / kPlanFile;
@@ -485,8 +458,7 @@ void writePlan(const Plan& plan, const std::string& folder)
 	{
 		if (const Plan old = readPlan(readFile(file.string()), file.string()); old.title != plan.title)
 		{
-			throw Error(ExitCode::usage,
-						folder + ": found the plan of '" + old.title + "', expected that of '" + plan.title + "', or a new folder");
+			refuse(folder + ": found the plan of '" + old.title + "', expected that of '" + plan.title + "', or a new folder");
 		}
 	}
 	std::error_code failed;
@@ -526,7 +498,7 @@ void tellStatus(const PlanOptions& options)
 		}
 	}
 	summary.texts("left", names);
-	tell(options.outputs, summary, text);
+	writeOutputs(options.outputs, {}, summary.json(), {}, text);
 }
 
 void checkForm(const PlanOptions& options)
@@ -535,17 +507,17 @@ void checkForm(const PlanOptions& options)
 	{
 		if (!options.status.empty() && option->count() > 0 && option->get_name() != "--status" && option->get_name() != "--json")
 		{
-			throw Error(ExitCode::usage, "--status: found with " + option->get_name() + ", expected it alone, or with --json");
+			refuse("--status: found with " + option->get_name() + ", expected it alone, or with --json");
 		}
 	}
 	if (options.status.empty() && options.words.empty())
 	{
-		throw Error(ExitCode::usage, "the command: found none, expected nook plan OPTIONS -- VERB ARGUMENTS, nook plan OPTIONS "
-									 "LEVELS.json, or --status DIR");
+		refuse("the command: found none, expected nook plan OPTIONS -- VERB ARGUMENTS, nook plan OPTIONS "
+			   "LEVELS.json, or --status DIR");
 	}
 	if (options.status.empty() && options.folder.empty())
 	{
-		throw Error(ExitCode::usage, "-o: found none, expected a folder for the plan");
+		refuse("-o: found none, expected a folder for the plan");
 	}
 	if (!options.outputs.json.empty())
 	{
@@ -564,7 +536,7 @@ void run(PlanOptions& options, VerbProgress&)
 	const bool list = options.words.size() == 1 && options.words.front().ends_with(".json");
 	if (list && (options.shares > 1 || options.minutes > 0 || options.mebibytes > 0))
 	{
-		throw Error(ExitCode::usage, "--shares, --minutes, --memory: found with a list of levels, expected them in its steps");
+		refuse("--shares, --minutes, --memory: found with a list of levels, expected them in its steps");
 	}
 	const Plan plan = list ? planOfLevels(options) : planOfCommand(options);
 	const std::string folder = list ? options.folder + "/plan" : options.folder;
@@ -579,7 +551,7 @@ void run(PlanOptions& options, VerbProgress&)
 		summary.text("start", engine->start);
 		text += folder + ": " + std::string(engine->start) + "\n";
 	}
-	tell(options.outputs, summary, text);
+	writeOutputs(options.outputs, {}, summary.json(), {}, text);
 }
 
 void declare(CLI::App& app, PlanOptions& options)

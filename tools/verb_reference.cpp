@@ -4,6 +4,7 @@
 #include "scene_options.h"
 
 #include "core/decimal.h"
+#include "core/lists.h"
 #include "core/work_units.h"
 #include "format/pattern_file.h"
 #include "scene/reference.h"
@@ -24,7 +25,6 @@ constexpr std::array<std::string_view, 2> kImageFormats{".exr", ".png"};
 constexpr std::array<std::string_view, 1> kPointFormats{".csv"};
 constexpr std::array<std::string_view, 3> kAllFormats{".exr", ".png", ".csv"};
 constexpr std::array<std::string_view, 5> kMeasures{"obscurance", "sphere", "hemisphere", "box", "bent"};
-constexpr std::array<std::string_view, 3> kFalloffs{"hard", "linear", "alchemy"};
 constexpr std::array<std::string_view, 2> kSources{"geometry", "depth"};
 
 struct ReferenceOptions
@@ -51,21 +51,15 @@ void declare(CLI::App& app, ReferenceOptions& options)
 		{{"--gbuffer", takesText(options.gbuffer, "FILE.exr"), "The pixels to work on"},
 		 {"--points", takesText(options.points, "FILE.csv"),
 		  "The points to work on, one a line: x,y,z,nx,ny,nz (position in metres and normal, world space)"},
-		 {"--radius",
-		  takesNumber(settings.radius_m, 1e-6, std::numeric_limits<double>::infinity()),
-		  "Metres that a ray reaches, or radius of the volume (box: half its side), to 1e9; inf: without end",
-		  {.required = true}},
+		 {"--radius", takesNumber(settings.radius_m, 1e-6, std::numeric_limits<double>::infinity()),
+		  "Metres that a ray reaches, or radius of the volume (box: half its side), to 1e9; inf: without end", kRequired},
 		 {"--measure", takesChoice(kMeasures, settings.measure),
 		  "Obscurance by rays over the hemisphere (default), or the open share of a volume around the point: the sphere, its half "
 		  "above the surface, the box along the camera's axes; bent: obscurance, and the mean direction of what is open"},
-		 {"--falloff",
-		  takesChoice(kFalloffs, settings.falloff),
+		 {"--falloff", takesChoice(kFalloffs, settings.falloff),
 		  "Weight of a surface at distance t: hard 1 (default), linear 1 - t/radius, alchemy u t / max(u, t)^2",
-		  {.excludes = {{volumes, "--measure obscurance or bent", "with the open share of a volume"}}}},
-		 {"--falloff-u",
-		  takesNumber(options.falloff_u_m, 1e-9, 1e9),
-		  "u of --falloff alchemy, metres (default: a tenth of the radius)",
-		  {.needs = {{"--falloff alchemy", "both or none"}}}},
+		  excludes(volumes, "--measure obscurance or bent", "with the open share of a volume")},
+		 falloffUnitRow(options.falloff_u_m),
 		 {"--from",
 		  takesChoice(kSources, settings.source),
 		  "What the volume holds: the level's solids (default), or whatever is behind the depth buffer, which needs no LEVEL",
@@ -74,12 +68,11 @@ void declare(CLI::App& app, ReferenceOptions& options)
 		 {"--rays", takesWhole(options.rays, 1, kMaxSamples),
 		  "Rays, or samples of the volume, a point (default 256; with --max-error the most, default 4096)"},
 		 {"--max-error", takesNumber(settings.max_error, 1e-5, 1.0), "Stop at a point once its standard error is this small"},
-		 {"--lift",
-		  takesNumber(settings.lift_m, 0.0, 1e6),
+		 {"--lift", takesNumber(settings.lift_m, 0.0, 1e6),
 		  "Metres by which points may be off the level's surface beside rounding, as levels of detail are (default 0): rays begin "
 		  "that much above them",
-		  {.excludes = {{"--from depth", "none, since no ray begins anywhere"}}}}});
-	addSeed(app, settings.seed);
+		  excludes("--from depth", "none, since no ray begins anywhere")},
+		 seedRow(settings.seed)});
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kAllFormats);
 	addRun(app, options.outputs, true);
@@ -104,10 +97,6 @@ void settle(ReferenceOptions& options)
 	{
 		refuse("--radius: found 'inf', expected metres, since what is measured is a share of it");
 	}
-	if (std::isfinite(settings.radius_m) && settings.radius_m > 1e9)
-	{
-		refuseValue("--radius", numberText(settings.radius_m), "metres from 0.000001 to 1000000000, or inf");
-	}
 	if (!options.points.empty() && (fromDepth(settings) || settings.measure == ReferenceMeasure::box))
 	{
 		refuse("--points: found with a measure that needs a camera, expected --gbuffer FILE.exr");
@@ -120,11 +109,7 @@ void settle(ReferenceOptions& options)
 	{
 		refuse("LEVEL: found with --from depth, expected none, since the depth buffer alone decides");
 	}
-	if (!options.falloff_u_m && settings.falloff == Falloff::alchemy && std::isinf(settings.radius_m))
-	{
-		refuse("--falloff-u: found none, expected metres, since the radius is without end");
-	}
-	settings.falloff_u_m = options.falloff_u_m.value_or(0.1 * settings.radius_m);
+	settings.falloff_u_m = falloffUnit(options.falloff_u_m, settings.radius_m, settings.falloff);
 	settings.rays = options.rays.value_or(settings.max_error > 0.0 ? 4096 : settings.rays);
 	checkGBufferImport(options.import);
 }
@@ -270,13 +255,6 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 
 	const Notes notes = notesOf(options);
 	const bool bent = options.settings.measure == ReferenceMeasure::bent;
-	OutputSet files;
-	for (const std::string& path : options.outputs.files)
-	{
-		files.add(path, image  ? imageBytes(formatOf(path, formats), gbuffer, values, bent, notes)
-						: bent ? bentCsv(values)
-							   : visibilityCsv(values));
-	}
 	addSettings(facts, options);
 	summarise(facts, values);
 	give("visibility", values, &ReferenceValue::visibility);
@@ -284,13 +262,15 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 	give("rays", values, &ReferenceValue::rays);
 	if (bent)
 	{
-		std::vector<glm::vec3> directions;
-		std::transform(values.begin(), values.end(), std::back_inserter(directions),
-					   [](const ReferenceValue& value) { return value.bent; });
-		give<float>("bent", directions, {directions.size(), 3});
+		give<float>("bent", mapped(values, [](const ReferenceValue& value) { return value.bent; }), {values.size(), 3});
 	}
-	addSide(files, options.outputs, facts.json(), read);
-	files.commit();
+	const auto bytesOf = [&](const std::string& path)
+	{
+		return image  ? imageBytes(formatOf(path, formats), gbuffer, values, bent, notes)
+			   : bent ? bentCsv(values)
+					  : visibilityCsv(values);
+	};
+	writeOutputs(options.outputs, bytesOf, facts.json(), read);
 }
 
 } // namespace

@@ -2,13 +2,11 @@
 // nook report: measurements → one page that a team chooses from.
 #include "options.h"
 
-#include "core/error.h"
 #include "core/file.h"
 #include "study/noise_report.h"
 #include "version.h"
 
 #include <array>
-#include <filesystem>
 
 namespace nook
 {
@@ -33,13 +31,9 @@ void run(const NoiseOptions& options, VerbProgress& progress)
 		return;
 	}
 	const std::string command = noiseReportCommand(options.settings);
-	OutputSet files;
-	for (const std::string& path : options.outputs.files)
-	{
-		files.add(path, noiseReportHtml(report, command, NOOK_VERSION));
-	}
-	addSide(files, options.outputs, options.outputs.json.empty() ? "" : noiseReportJson(report, command, NOOK_VERSION), {});
-	files.commit();
+	const std::string html = options.outputs.files.empty() ? "" : noiseReportHtml(report, command, NOOK_VERSION);
+	const std::string json = options.outputs.json.empty() ? "" : noiseReportJson(report, command, NOOK_VERSION);
+	writeOutputs(options.outputs, [&](const std::string&) { return html; }, json, {});
 }
 
 } // namespace
@@ -55,8 +49,8 @@ Verb addReportVerb(CLI::App& nook)
 		*app,
 		{{"--max-count", takesWhole(settings.max_count, 1, kMaxReportCount), "Counts from 1 to this (default 64)"},
 		 {"--starts", takesWhole(settings.starts, 1, 1000), "Starting sets of every method that searches (default: by method)"},
-		 {"--seeds", takesWhole(settings.random_seeds, 1, 100), "Seeds over which random and poisson are averaged (default 3)"}});
-	addSeed(*app, settings.seed);
+		 {"--seeds", takesWhole(settings.random_seeds, 1, 100), "Seeds over which random and poisson are averaged (default 3)"},
+		 seedRow(settings.seed)});
 	addOutputs(*app, options->outputs, std::array<std::string_view, 1>{".html"});
 	addRun(*app, options->outputs, true);
 	const std::vector<Verb> measured = addMeasuredReports(*report);

@@ -6,6 +6,7 @@
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "core/text.h"
 #include "core/work_units.h"
 #include "methods/method_table.h"
@@ -48,7 +49,7 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 	addLoadOptions(app, settings.load);
 	addCameraChoice(app, options.camera);
 	addPictureSize(app, options.camera, "320x180");
-	const OptionRules not_quick{.excludes = {{"--quick"}}};
+	const OptionRules not_quick = excludes("--quick");
 	addOptions(
 		app,
 		{{"--grid", takesChoice(namesOf<GridSize>(), settings.grid),
@@ -58,8 +59,8 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 		 {"--methods", takesText(options.methods, "LIST"),
 		  "Only these, with commas between: " + measuredNames() + " (default: all)"},
 		 {"--rays", takesWhole(settings.rays, 1, 16384), "Rays a pixel of the reference (default 1024)", not_quick},
-		 {"--repetitions", takesWhole(measure.repetitions, 1, 1000),
-		  "Drawings of each candidate, after a warm-up (default 5)", not_quick},
+		 {"--repetitions", takesWhole(measure.repetitions, 1, 1000), "Drawings of each candidate, after a warm-up (default 5)",
+		  not_quick},
 		 {"--slowest", takesNumber(measure.slowest_s, 0.0, 1e6, "SECONDS"),
 		  "Volumes that would take longer a picture are stopped, and shown as such; 0: none (default 60, with --quick 4)"},
 		 {"--quick", takesFlag(options.quick), "A first look: --grid quick --size 240x135 --rays 256 --repetitions 3 --slowest 4"},
@@ -69,19 +70,14 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 		 {"--device",
 		  takesIndex(kMeasuringDevices, [&measure](std::size_t i) { measure.device = i == 0 ? Device::gl : Device::cpu; }),
 		  "gl (default): OpenGL without a display, whatever renderer that is; or cpu: our own code"},
-		 {"--gl-device",
-		  takesWhole(measure.gl_device, 0, 255),
-		  "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)",
-		  {.excludes = {{"--device cpu", "--device gl"}}}},
+		 glDeviceRow(measure.gl_device, excludes("--device cpu", "--device gl")),
 		 {"--pictures", takesWhole(settings.pictures, 0, 64), "Pictures of each view, beside the reference (default 8)"},
 		 {"--shifts", takesWhole(settings.shifts, 0, 64),
 		  "Parts of a pixel by which views are moved to see what flickers (default 4, at least 2; 0: not measured)"},
 		 {"--frames", takesWhole(settings.frames, 2, kMostFrames),
 		  "Frames of a camera that stands, pans and walks, behind a mean over frames (default: none)"},
-		 {"--ema",
-		  takesNumber(settings.ema, 1e-6, 1.0),
-		  "With --frames: weight of the newest frame in the mean (default 0.1)",
-		  {.needs = {{"--frames"}}}},
+		 {"--ema", takesNumber(settings.ema, 1e-6, 1.0), "With --frames: weight of the newest frame in the mean (default 0.1)",
+		  needs("--frames")},
 		 {"--baseline", takesText(options.baseline, "FILE.json"),
 		  "An earlier report: exit code 7 where an error has grown (times do not count)"}});
 	addRun(app, options.outputs, true);
@@ -101,13 +97,13 @@ void checkJoin(const ErrorOptions& options)
 	{
 		if (option->count() > 0)
 		{
-			throw Error(ExitCode::usage, option->get_name() + ": found with --join, which measures nothing, expected one of them");
+			refuse(option->get_name() + ": found with --join, which measures nothing, expected one of them");
 		}
 	}
 	if (!options.settings.levels.empty() || !options.outputs.json.empty())
 	{
-		throw Error(ExitCode::usage, std::string(options.settings.levels.empty() ? "--json" : "LEVEL") +
-										 ": found with --join, which measures nothing, expected -o FILE.html alone");
+		refuse(std::string(options.settings.levels.empty() ? "--json" : "LEVEL") +
+			   ": found with --join, which measures nothing, expected -o FILE.html alone");
 	}
 }
 
@@ -121,7 +117,7 @@ void settle(ErrorOptions& options)
 	}
 	if (settings.levels.empty())
 	{
-		throw Error(ExitCode::usage, "LEVEL: found none, expected a level, or --join FILE.json");
+		refuse("LEVEL: found none, expected a level, or --join FILE.json");
 	}
 	settings.methods = partsOf(options.methods);
 	for (const std::string& method : settings.methods)
@@ -153,25 +149,20 @@ void settle(ErrorOptions& options)
 	}
 }
 
-void addPages(OutputSet& files, const ErrorOptions& options, std::span<const ErrorReport> reports)
+void writePages(const ErrorOptions& options, std::span<const ErrorReport> reports, const std::string& json,
+				const std::vector<std::string>& read)
 {
-	for (const std::string& path : options.outputs.files)
-	{
-		files.add(path, errorReportHtml(reports, NOOK_VERSION));
-	}
+	writeOutputs(
+		options.outputs, [&](const std::string&) { return errorReportHtml(reports, NOOK_VERSION); }, json, read);
 }
 
 void join(const ErrorOptions& options)
 {
-	std::vector<ErrorReport> reports;
-	for (const std::string& path : options.join)
+	const auto read = [](const std::string& path)
 	{
-		reports.push_back(errorReportFrom(readFile(path), path));
-	}
-	OutputSet files;
-	addPages(files, options, reports);
-	addSide(files, options.outputs, "", options.join);
-	files.commit();
+		return errorReportFrom(readFile(path), path);
+	};
+	writePages(options, mapped(options.join, read), "", options.join);
 }
 
 // One line for the worst, or nothing.
@@ -208,10 +199,7 @@ void measure(const ErrorOptions& options, VerbProgress& progress)
 		read.push_back(options.baseline);
 	}
 	checkRead(options.outputs, read);
-	OutputSet files;
-	addPages(files, options, {&report, 1});
-	addSide(files, options.outputs, options.outputs.json.empty() ? "" : errorReportJson(report), read);
-	files.commit();
+	writePages(options, {&report, 1}, options.outputs.json.empty() ? "" : errorReportJson(report), read);
 
 	std::string failures;
 	std::size_t failed = 0;
@@ -250,37 +238,39 @@ void measure(const ErrorOptions& options, VerbProgress& progress)
 	}
 }
 
+void declareReport(CLI::App& app, ErrorOptions& options)
+{
+	app.add_option("LEVEL", options.settings.levels, "Levels (.gltf .glb .obj .fbx .ply .stl), or builtin:NAME")
+		->type_name("LEVEL");
+	declareMeasuring(app, options);
+	app.add_option("--join", options.join, "Reports of several renderers (JSON) side by side on one page; nothing is measured")
+		->type_name("FILE.json");
+	addOutputs(app, options.outputs, kPages);
+}
+
+void runReport(ErrorOptions& options, VerbProgress& progress)
+{
+	settle(options);
+	std::vector<std::string> inputs = options.join;
+	inputs.insert(inputs.end(), options.settings.levels.begin(), options.settings.levels.end());
+	inputs.push_back(options.baseline);
+	std::erase(inputs, "");
+	checkOutputs(options.outputs, kPages, inputs);
+	if (options.join.empty())
+	{
+		measure(options, progress);
+	}
+	else
+	{
+		join(options);
+	}
+}
+
 } // namespace
 
 Verb addReportError(CLI::App& report)
 {
-	const auto options = std::make_shared<ErrorOptions>();
-	CLI::App* const app = report.add_subcommand("error", "Time against error of every method on levels");
-	app->add_option("LEVEL", options->settings.levels, "Levels (.gltf .glb .obj .fbx .ply .stl), or builtin:NAME")
-		->type_name("LEVEL");
-	declareMeasuring(*app, *options);
-	app->add_option("--join", options->join, "Reports of several renderers (JSON) side by side on one page; nothing is measured")
-		->type_name("FILE.json");
-	addOutputs(*app, options->outputs, kPages);
-	return {app, [options](VerbProgress& progress)
-			{
-				settle(*options);
-				std::vector<std::string> inputs = options->join;
-				inputs.insert(inputs.end(), options->settings.levels.begin(), options->settings.levels.end());
-				if (!options->baseline.empty())
-				{
-					inputs.push_back(options->baseline);
-				}
-				checkOutputs(options->outputs, kPages, inputs);
-				if (options->join.empty())
-				{
-					measure(*options, progress);
-				}
-				else
-				{
-					join(*options);
-				}
-			}};
+	return addVerb<ErrorOptions>(report, "error", "Time against error of every method on levels", declareReport, runReport);
 }
 
 } // namespace nook

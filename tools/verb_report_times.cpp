@@ -21,6 +21,16 @@ struct TimesOptions
 	Outputs outputs;
 };
 
+double radiusOf(const std::string& name, const std::string& text)
+{
+	const double radius_px = numberFrom<double>(text).value_or(0.0);
+	if (!(radius_px >= 1.0 && radius_px <= 65536.0))
+	{
+		refuseValue(name, text, "a number from 1 to 65536");
+	}
+	return radius_px;
+}
+
 void declareTimes(CLI::App& app, TimesOptions& options)
 {
 	TimesSettings& settings = options.settings;
@@ -29,37 +39,23 @@ void declareTimes(CLI::App& app, TimesOptions& options)
 	{
 		settings.levels.push_back(level);
 	};
-	const auto take_size = [&settings](const std::string& name, const std::string& size)
-	{
-		settings.sizes.push_back(sizeOf(name, size));
-	};
-	const auto take_radius = [&settings](const std::string& name, const std::string& text)
-	{
-		double& radius_px = settings.radii_px.emplace_back();
-		const char* const end = text.data() + text.size();
-		if (readDecimal(text.data(), end, radius_px).ptr != end || !(radius_px >= 1.0 && radius_px <= 65536.0))
-		{
-			refuseValue(name, text, "a number from 1 to 65536");
-		}
-	};
 	addOptions(
-		app,
-		{{"LEVEL", takesEach("LEVEL", take_level), "Levels (.gltf .glb .obj .fbx .ply .stl), or builtin:NAME", {.required = true}},
-		 {"--size", takesEach("WxH", take_size), "Width and height of the pictures in pixels, may be repeated (default 1920x1080)"},
-		 {"--radius-px", takesEach("X", take_radius),
-		  "Radius in pixels, the same at every pixel; may be repeated (default: by depth and the level's size)"},
-		 {"--check", takesFlag(settings.check),
-		  "Compares the pictures of the first size with those of the CPU; exit code 7 if too many pixels differ by more than "
-		  "1/255"},
-		 {"--grid", takesChoice(namesOf<GridSize>(), settings.grid), "How much is tried: quick (default), normal or full"},
-		 {"--only", takesText(options.only, "LIST"),
-		  "Only candidates whose names begin with these words, with commas between: vo-line, slices 1 (default: all)"},
-		 {"--repetitions", takesWhole(settings.measure.repetitions, 1, 1000),
-		  "Drawings of each candidate, after a warm-up (default 9)"},
-		 {"--seconds", takesNumber(settings.seconds, 0.0, 1e6),
-		  "Begins no further picture after this time, and counts those left out; 0 (default): no limit"},
-		 {"--gl-device", takesWhole(settings.measure.gl_device, 0, 255),
-		  "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)"}});
+		app, {{"LEVEL", takesEach("LEVEL", take_level), "Levels (.gltf .glb .obj .fbx .ply .stl), or builtin:NAME", kRequired},
+			  {"--size", takesEach("WxH", settings.sizes, sizeOf),
+			   "Width and height of the pictures in pixels, may be repeated (default 1920x1080)"},
+			  {"--radius-px", takesEach("X", settings.radii_px, radiusOf),
+			   "Radius in pixels, the same at every pixel; may be repeated (default: by depth and the level's size)"},
+			  {"--check", takesFlag(settings.check),
+			   "Compares the pictures of the first size with those of the CPU; exit code 7 if too many pixels differ by more than "
+			   "1/255"},
+			  {"--grid", takesChoice(namesOf<GridSize>(), settings.grid), "How much is tried: quick (default), normal or full"},
+			  {"--only", takesText(options.only, "LIST"),
+			   "Only candidates whose names begin with these words, with commas between: vo-line, slices 1 (default: all)"},
+			  {"--repetitions", takesWhole(settings.measure.repetitions, 1, 1000),
+			   "Drawings of each candidate, after a warm-up (default 9)"},
+			  {"--seconds", takesNumber(settings.seconds, 0.0, 1e6),
+			   "Begins no further picture after this time, and counts those left out; 0 (default): no limit"},
+			  glDeviceRow(settings.measure.gl_device)});
 	addJson(app, options.outputs.json);
 	addRun(app, options.outputs);
 }
@@ -143,9 +139,7 @@ void runTimes(TimesOptions& options, VerbProgress& progress)
 		unlike = unlike.empty() && one.unlike > kUnlikeShare ? name : unlike;
 	}
 	facts.items("pictures", std::move(pictures));
-	OutputSet files;
-	addSide(files, options.outputs, facts.json(), report.files);
-	files.commit();
+	writeOutputs(options.outputs, {}, facts.json(), report.files);
 	if (options.outputs.json != "-" && isStdoutFree(options.outputs))
 	{
 		writeFile("-", facts.lines());

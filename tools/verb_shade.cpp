@@ -6,6 +6,7 @@
 
 #include "core/decimal.h"
 #include "core/image.h"
+#include "core/lists.h"
 #include "emit/module.h"
 #include "format/pattern_file.h"
 #include "scene/reference.h"
@@ -61,11 +62,7 @@ std::span<const std::string_view> allMethods()
 {
 	static const std::vector<std::string_view> methods = []
 	{
-		std::vector<std::string_view> all;
-		for (const MethodRow& row : methodTable())
-		{
-			all.push_back(row.name);
-		}
+		std::vector<std::string_view> all = mapped(methodTable(), [](const MethodRow& row) { return row.name; });
 		for (const AssetKind* const kind : kindsBesideMethods())
 		{
 			all.push_back(kind->name);
@@ -78,27 +75,19 @@ std::span<const std::string_view> allMethods()
 // "vo-line: volumetric obscurance by lines; ...; bake: of --bake"
 std::string whatMethodsAre()
 {
-	std::string text;
-	for (const MethodRow& row : methodTable())
+	const auto textOfRow = [](const MethodRow& row)
 	{
-		text += (text.empty() ? "" : "; ") + std::string(row.name) + ": " + std::string(row.what);
-	}
-	for (const AssetKind* const kind : kindsBesideMethods())
-	{
-		text += "; " + std::string(kind->name) + ": of " + std::string(kind->option);
-	}
-	return text;
+		return std::string(row.name) + ": " + std::string(row.what);
+	};
+	return joinedText(methodTable(), "; ", textOfRow) +
+		   joinedText(kindsBesideMethods(), "",
+					  [](const AssetKind* kind) { return "; " + std::string(kind->name) + ": of " + std::string(kind->option); });
 }
 
 // "--method bake": the kinds of assets that are drawn by themselves.
 std::string methodsAlone()
 {
-	std::string names;
-	for (const AssetKind* const kind : kindsBesideMethods())
-	{
-		names += (names.empty() ? "--method " : "|") + std::string(kind->name);
-	}
-	return names;
+	return "--method " + joinedText(kindsBesideMethods(), "|", [](const AssetKind* kind) { return kind->name; });
 }
 
 // Files of kinds that are drawn by their rows alone.
@@ -110,10 +99,8 @@ std::vector<OptionRow> assetRows(ComposeSettings& compose)
 		if (kind->read != nullptr)
 		{
 			const std::string method = "--method " + std::string(kind->name);
-			rows.push_back({std::string(kind->option),
-							takesText(compose.asset_path, "FILE"),
-							"With " + method + ": " + std::string(kind->what),
-							{.needs = {{method, method, "with another method"}}}});
+			rows.push_back({std::string(kind->option), takesText(compose.asset_path, "FILE"),
+							"With " + method + ": " + std::string(kind->what), needs(method, method, "with another method")});
 		}
 	}
 	return rows;
@@ -146,12 +133,11 @@ std::vector<OptionRow> volumeRows(ComposeSettings& compose)
 	const OptionRule sums{"--method " + maskMethod(), "--method " + sumMethod(),
 						  "with --method " + maskMethod() + ", which adds nothing up"};
 	return {
-		{"--volumes",
-		 takesText(compose.volumes, "FILE.glb"),
+		{"--volumes", takesText(compose.volumes, "FILE.glb"),
 		 "Occlusion volumes of the level that the G-buffer shows (nook volumes): " + volumeMethods(" and ") +
 			 " draw them alone; with another method each pixel takes the lesser visibility of the two",
-		 {.excludes = {{methodsAlone(), "--method " + volumeMethods(" or ")}}}},
-		directionsRow(compose.aov.directions, {.needs = {{"--method " + maskMethod(), maskMethod(), "with another method"}}}),
+		 excludes(methodsAlone(), "--method " + volumeMethods(" or "))},
+		directionsRow(compose.aov.directions, needs("--method " + maskMethod(), maskMethod(), "with another method")),
 		{"--accumulate",
 		 takesChoice(kTargets, compose.aov.target),
 		 "Volumes, --device gl: what occlusion is added up in: r16f (default), r8, which saturates, or r32f",
@@ -213,8 +199,8 @@ void declare(CLI::App& app, ShadeOptions& options)
 	};
 	addOptions(
 		app,
-		{{"FILE", takesText(options.gbuffer, "FILE.exr"), "A G-buffer, of nook or of an engine", {.required = true}},
-		 {"--method", takesChoice(allMethods(), options.method), whatMethodsAre(), {.required = true}},
+		{{"FILE", takesText(options.gbuffer, "FILE.exr"), "A G-buffer, of nook or of an engine", kRequired},
+		 {"--method", takesChoice(allMethods(), options.method), whatMethodsAre(), kRequired},
 		 {"--pattern", takesText(compose.pattern, "FILE"),
 		  "The samples: a pattern or a tile of nook (default: 9 of nook's own, crytek 16 of Crytek's, reflected at random in 4 x 4 "
 		  "pixels). Lines and areas take the disk, points the ball, Alchemy and volumetric-ao the hemisphere, seen from above",
@@ -243,16 +229,12 @@ void declare(CLI::App& app, ShadeOptions& options)
 					  "full (default), or half: every second pixel of both axes, the others from those of their surface; " +
 						  volumeMethods(" and ") + ": third or fifth"},
 					 {"--device", takesChoice(kDevices, compose.gl), "cpu (default), or gl: OpenGL 3.3 without a display"},
-					 {"--gl-device",
-					  takesWhole(compose.drawing.gl_device, 0, 255),
-					  "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)",
-					  {.needs = {{"--device gl", "--device gl", "with --device cpu"}}}},
+					 glDeviceRow(compose.drawing.gl_device, needs("--device gl", "--device gl", "with --device cpu")),
 					 debugRow(settings),
-					 {"--timing",
-					  takesFlag(options.timing),
+					 {"--timing", takesFlag(options.timing),
 					  "Prints the renderer and the milliseconds of the picture and of each pass: medians of 9 drawings after a "
 					  "warm-up, by the GPU's timers, by the clock on a CPU",
-					  {.excludes = {{"--progress -", "--progress FILE", "with --progress -, where it prints"}}}}});
+					  excludes("--progress -", "--progress FILE", "with --progress -, where it prints")}});
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kShadeFormats);
 	addRun(app, options.outputs);
@@ -503,16 +485,6 @@ void addTimes(Facts& facts, const Shaded& shaded)
 	facts.items("passes", std::move(passes));
 }
 
-double meanOf(const std::vector<float>& values)
-{
-	double sum = 0.0;
-	for (const float value : values)
-	{
-		sum += static_cast<double>(value);
-	}
-	return sum / static_cast<double>(values.size());
-}
-
 Facts factsOf(const ShadeOptions& options, const GBuffer& gbuffer, const Composed& drawn, const Picture& picture)
 {
 	const ComposeSettings& compose = options.compose;
@@ -582,19 +554,17 @@ void run(ShadeOptions& options, VerbProgress& progress)
 	give<float>("visibility", picture.values, size);
 	give<float>("bent", bent, {size[0], size[1], 3});
 	const Notes notes = notesOf(options, drawn);
-	OutputSet files;
-	for (const std::string& path : options.outputs.files)
+	const auto bytesOf = [&](const std::string& path)
 	{
 		const std::string_view format = formatOf(path, kShadeFormats);
 		const ShadeSettings& shade = options.compose.shade;
-		files.add(path, format == ".json" ? passesJson(frameOf(gbuffer), drawn.samples, shade, NOOK_VERSION)
-										  : imageBytes(format == ".png", picture, bent, std::string(debugName(shade)), notes));
-	}
+		return format == ".json" ? passesJson(frameOf(gbuffer), drawn.samples, shade, NOOK_VERSION)
+								 : imageBytes(format == ".png", picture, bent, std::string(debugName(shade)), notes);
+	};
 	std::vector<std::string> read = filesOf(options);
 	read.insert(read.end(), drawn.files.begin(), drawn.files.end());
 	const Facts facts = factsOf(options, gbuffer, drawn, picture);
-	addSide(files, options.outputs, facts.json(), read);
-	files.commit();
+	writeOutputs(options.outputs, bytesOf, facts.json(), read);
 	if (options.timing && options.outputs.json != "-")
 	{
 		writeFile("-", facts.lines());

@@ -10,8 +10,6 @@
 #include "pattern/tile.h"
 #include "version.h"
 
-#include <filesystem>
-
 namespace nook
 {
 namespace
@@ -38,21 +36,17 @@ void declare(CLI::App& app, TileOptions& options)
 		 {"--domain",
 		  takesChoice(std::span(namesOf<Domain>()).subspan(static_cast<std::size_t>(Domain::slice)), options.slice_domain),
 		  "In place of --pattern: azimuths and jitters for --method slices"},
-		 {"--count",
-		  takesWhole(options.slices, 1, kMostSlices),
-		  "With --domain slice: slices a pixel (default 1)",
-		  {.needs = {{"--domain", "--domain slice", "with --pattern, whose count it is"}}}},
-		 {"--size",
-		  takesWhole(recipe.size, 2, kMaxTileSize),
-		  "Width of the window in pixels; above 8 with --filter alone",
-		  {.required = true}},
+		 {"--count", takesWhole(options.slices, 1, kMostSlices), "With --domain slice: slices a pixel (default 1)",
+		  needs("--domain", "--domain slice", "with --pattern, whose count it is")},
+		 {"--size", takesWhole(recipe.size, 2, kMaxTileSize), "Width of the window in pixels; above 8 with --filter alone",
+		  kRequired},
 		 {"--kind", takesChoice(namesOf<TileKind>(), recipe.kind),
 		  "Points of their own for every variant (default), the base pattern turned and scaled, turned by even steps, or reflected "
 		  "at random"},
 		 filterRow(options.filters,
 				   "Makes the tile for what is seen behind a filter, in place of the window's mean: none, box:N, binomial:N, "
 				   "gauss:SIGMA, bilateral:N or file:KERNEL.json; with @SHARE how much it counts; may be repeated"),
-		 emaRow(recipe.ema, {.needs = {{"--frames"}}}),
+		 emaRow(recipe.ema, needs("--frames")),
 		 {"--robust", takesFlag(recipe.robust), "With --filter: also where an edge cuts off half of its taps"},
 		 {"--frames", takesWhole(recipe.frames, 2, kMaxTileFrames),
 		  "With --filter: a tile for each frame of a cycle, for engines that average over frames"},
@@ -61,11 +55,9 @@ void declare(CLI::App& app, TileOptions& options)
 		  "--kind points: each variant's samples in the order whose prefixes err least, for --bands and --counts"},
 		 {"--lambda", takesNumber(recipe.lambda, 1e-6, 1e6),
 		  "Weight of the variants' own error against that of the window (default: by kind)"},
-		 {"--starts", takesWhole(recipe.starts, 1, 1000), "Independent starts, the best is kept (default: by kind)"}});
-	addSeed(app, recipe.seed);
-	addOptions(
-		app,
-		{{"--memory", takesBytes(options.memory_bytes), "Refuses, before work starts, a tile that may take more (default 4GiB)"},
+		 {"--starts", takesWhole(recipe.starts, 1, 1000), "Independent starts, the best is kept (default: by kind)"},
+		 seedRow(recipe.seed),
+		 {"--memory", takesBytes(options.memory_bytes), "Refuses, before work starts, a tile that may take more (default 4GiB)"},
 		 {"--name", takesText(options.name, "IDENT"), "Stem of the identifiers in source files (default: from the pattern)"}});
 	addOutputs(app, options.outputs, tileFormats());
 	addRun(app, options.outputs);
@@ -113,11 +105,6 @@ void run(TileOptions& options, VerbProgress& progress)
 															 : tileCommand(recipe, nativePath(options.pattern).filename().string());
 	const EmitContext context{command, NOOK_VERSION, options.name, file.command};
 
-	OutputSet files;
-	for (const std::string& path : options.outputs.files)
-	{
-		files.add(path, tileBytes(formatOf(path, tileFormats()), tile, &recipe, quality, context));
-	}
 	Facts facts = verbFacts("tile");
 	facts.text("command", context.command);
 	facts.text("base_command", context.base_command);
@@ -127,8 +114,11 @@ void run(TileOptions& options, VerbProgress& progress)
 	facts.measures("quality", measuresOf(quality));
 	facts.measures("behind", measuresBehind(tile, recipe.filters, recipe.ema, kMaxShareSteps, settings));
 	giveSamples(tile.variants, {tile.variants.size(), base.count()});
-	addSide(files, options.outputs, facts.json(), inputs);
-	files.commit();
+	const auto bytesOf = [&](const std::string& path)
+	{
+		return tileBytes(formatOf(path, tileFormats()), tile, &recipe, quality, context);
+	};
+	writeOutputs(options.outputs, bytesOf, facts.json(), inputs);
 }
 
 } // namespace

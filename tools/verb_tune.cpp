@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/text.h"
+#include "core/lists.h"
 #include "emit/module.h"
 #include "methods/method_table.h"
 #include "study/command_words.h"
@@ -16,7 +16,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 namespace nook
@@ -51,7 +50,7 @@ void declare(CLI::App& app, TuneOptions& options)
 	TuneSettings& settings = options.settings;
 	options.app = &app;
 	app.add_option("LEVEL", options.levels, "Levels to choose for: files that nook reads, or builtin:NAME")->required();
-	const OptionRules with_files{.needs = {{"-o", "a folder for the files that it shapes", "without -o"}}};
+	const OptionRules with_files = needs("-o", "a folder for the files that it shapes", "without -o");
 	addOptions(app,
 			   {{"--budget", takesText(options.budget, "TIME"), "Least error within this time per picture: 1.0ms, 800us"},
 				{"--max-error", takesNumber(settings.goal.max_error, 1e-9, 1e9, "E"),
@@ -77,7 +76,7 @@ void declare(CLI::App& app, TuneOptions& options)
 		{{"--views", takesWhole(settings.views, 1, 64), "Views of each level, the most informative ones (default 4)"},
 		 {"--rays", takesWhole(settings.reference_rays, 1, 1 << 20), "Rays a pixel of the reference (default 256)"},
 		 {"--repetitions", takesWhole(settings.repetitions, 1, 1000), "Drawings of what gets to the end (default 7)"},
-		 {"--gl-device", takesWhole(settings.gl_device, 0, 255), "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)"},
+		 glDeviceRow(settings.gl_device),
 		 {"--glsl", takesChoice(glslTargets(), options.emit.target),
 		  "Language of the shader: OpenGL 3.3 (default), OpenGL 4.3, OpenGL ES 3.0, or Vulkan; volumes are in the first two",
 		  with_files},
@@ -161,9 +160,8 @@ std::vector<std::string> searchedMethods(const TuneOptions& options)
 		const MethodRow* const row = methodNamed(method);
 		if (row != nullptr && row->kind == MethodKind::volumes && !draws_volumes)
 		{
-			throw Error(ExitCode::usage, "--glsl: found " +
-											 std::string(glslTargets()[static_cast<std::size_t>(options.emit.target)]) +
-											 " with volumes, expected 330 or 430");
+			refuse("--glsl: found " + std::string(glslTargets()[static_cast<std::size_t>(options.emit.target)]) +
+				   " with volumes, expected 330 or 430");
 		}
 		if (row != nullptr ? !row->emitted : assetNamed(method) == nullptr)
 		{
@@ -193,8 +191,7 @@ void check(TuneOptions& options)
 	const bool bounded = settings.goal.max_error.has_value();
 	if (bounded == !options.budget.empty())
 	{
-		throw Error(ExitCode::usage,
-					std::string("--budget, --max-error: found ") + (bounded ? "both" : "neither") + ", expected one of them");
+		refuse(std::string("--budget, --max-error: found ") + (bounded ? "both" : "neither") + ", expected one of them");
 	}
 	if (!bounded)
 	{
@@ -212,11 +209,7 @@ void check(TuneOptions& options)
 // Returns the command as it was given, without outputs.
 std::string tuneCommand(const TuneOptions& options)
 {
-	std::string command = "nook tune";
-	for (const std::string& level : options.levels)
-	{
-		command += " " + shellWord(level);
-	}
+	std::string command = "nook tune " + joinedText(options.levels, " ", shellWord);
 	for (const CLI::Option* const option : options.app->get_options())
 	{
 		const std::string name = option->get_name();
@@ -256,7 +249,7 @@ void write(const TuneOptions& options, const TuneReport& report, const TuneText&
 	{
 		checkFiles(options, {}, &report);
 	}
-	addSummary(files, options.outputs, options.outputs.json.empty() ? "" : tuneJson(report, text), tuneLines(report, text));
+	addSide(files, options.outputs, options.outputs.json.empty() ? "" : tuneJson(report, text), {}, tuneLines(report, text));
 	files.commit();
 }
 

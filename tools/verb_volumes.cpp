@@ -3,7 +3,7 @@
 #include "call.h"
 #include "scene_options.h"
 
-#include "core/error.h"
+#include "core/decimal.h"
 #include "core/system.h"
 #include "core/work_units.h"
 #include "scene/tracer.h"
@@ -14,9 +14,7 @@
 #include "volume/volumes.h"
 
 #include <array>
-#include <charconv>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <optional>
 
@@ -40,41 +38,33 @@ struct VolumeOptions
 	Outputs outputs;
 };
 
-bool readNumber(std::string_view text, double& value)
-{
-	const char* const end = text.data() + text.size();
-	const std::from_chars_result result = std::from_chars(text.data(), end, value);
-	return result.ec == std::errc{} && result.ptr == end && std::isfinite(value);
-}
-
 // "1/512" or "0.002".
-void takeShare(const std::string& option, const std::string& text, double& share, bool whole_too = true)
+double shareOfText(const std::string& option, const std::string& text, bool whole_too)
 {
 	const std::size_t slash = text.find('/');
-	double whole = 1.0;
-	const bool good = readNumber(std::string_view(text).substr(0, slash), share) &&
-					  (slash == std::string::npos || readNumber(std::string_view(text).substr(slash + 1), whole)) && whole > 0.0;
-	share /= whole;
-	if (!good || !(share > 0.0 && (share < 1.0 || (whole_too && share <= 1.0))))
+	const double whole = slash == std::string::npos ? 1.0 : numberFrom<double>(text.substr(slash + 1)).value_or(0.0);
+	const double share = numberFrom<double>(text.substr(0, slash)).value_or(0.0) / whole;
+	if (!(whole > 0.0 && share > 0.0 && (share < 1.0 || (whole_too && share <= 1.0))))
 	{
 		refuseValue(option, text, std::string("a share above 0, ") + (whole_too ? "at most" : "below") + " 1: 0.002 or 1/512");
 	}
+	return share;
+}
+double shareUpToOne(const std::string& option, const std::string& text)
+{
+	return shareOfText(option, text, true);
 }
 
 // "2", or "none" as 0.
 void takeExtent(const std::string& option, const std::string& text, OccluderSettings& settings)
 {
-	double& extent = settings.extent;
-	settings.extent_always = true;
-	if (text == "none")
-	{
-		extent = 0.0;
-		return;
-	}
-	if (!readNumber(text, extent) || !(extent >= 0.1 && extent <= 1e6))
+	const double extent = numberFrom<double>(text).value_or(0.0);
+	if (text != "none" && !(extent >= 0.1 && extent <= 1e6))
 	{
 		refuseValue(option, text, "0.1 or more, at most 1e6, or none");
 	}
+	settings.extent = extent;
+	settings.extent_always = true;
 }
 
 // "0.02", "auto", "auto:0.1".
@@ -83,40 +73,34 @@ void takeDetail(const std::string& option, const std::string& text, VolumeSettin
 	constexpr std::string_view kAuto = "auto";
 	if (!text.starts_with(kAuto))
 	{
-		takeShare(option, text, settings.occluders.detail, false);
+		settings.occluders.detail = shareOfText(option, text, false);
 		return;
 	}
 	double& more = settings.detail_more.emplace(DetailSettings{}.more);
 	if (text != kAuto)
 	{
-		takeShare(option, text.substr(0, kAuto.size() + 1) == "auto:" ? text.substr(kAuto.size() + 1) : text, more);
+		more = shareUpToOne(option, text.starts_with("auto:") ? text.substr(kAuto.size() + 1) : text);
 	}
 }
 
-void takeFlat(const std::string& option, const std::string& text, double& flat)
+double flatOf(const std::string& option, const std::string& text)
 {
-	if (!readNumber(text, flat) || !(flat >= 1e-6 && flat <= 0.05))
+	const double flat = numberFrom<double>(text).value_or(0.0);
+	if (!(flat >= 1e-6 && flat <= 0.05))
 	{
 		refuseValue(option, text, "a share from 1e-6 to 0.05");
 	}
+	return flat;
 }
 
-OptionRow shareRow(const std::string& name, const std::function<double&()>& share, bool whole_too, const std::string& help,
-				   OptionRules rules = {})
+// "0" or a share below 1.
+double lossOf(const std::string& option, const std::string& text)
 {
-	const auto take = [share, whole_too](const std::string& option, const std::string& text)
-	{
-		takeShare(option, text, share(), whole_too);
-	};
-	return {name, takesParsed("SHARE", take), help, std::move(rules)};
+	return text == "0" ? 0.0 : shareOfText(option, text, false);
 }
 
 std::vector<OptionRow> occluderRows(OccluderSettings& occluders, VolumeSettings& settings)
 {
-	const auto take_flat = [&occluders](const std::string& name, const std::string& text)
-	{
-		takeFlat(name, text, occluders.flat);
-	};
 	const auto take_extent = [&occluders](const std::string& name, const std::string& text)
 	{
 		takeExtent(name, text, occluders);
@@ -129,11 +113,10 @@ std::vector<OptionRow> occluderRows(OccluderSettings& occluders, VolumeSettings&
 		{"--sides", takesChoice(kSides, occluders.sides),
 		 "Which sides of a polygon darken: the front of closed opaque surfaces and both of all others (auto, default), the front "
 		 "alone, or both"},
-		{"--no-merge",
-		 takesFlag(occluders.merge, false),
+		{"--no-merge", takesFlag(occluders.merge, false),
 		 "A polygon for each triangle; else neighbours in one plane become one, or a few that are convex",
-		 {.excludes = {{"--flat or --extent", "one or the other", "with --flat or --extent"}}}},
-		{"--flat", takesParsed("SHARE", take_flat),
+		 excludes("--flat or --extent", "one or the other", "with --flat or --extent")},
+		{"--flat", takesParsed("SHARE", occluders.flat, flatOf),
 		 "How far off their plane merged neighbours may lie, as a share of the distance, 1e-6 to 0.05 (default 1e-4; what is "
 		 "two-sided at most 5e-5)"},
 		{"--extent", takesParsed("X", take_extent),
@@ -147,44 +130,27 @@ std::vector<OptionRow> occluderRows(OccluderSettings& occluders, VolumeSettings&
 
 std::vector<OptionRow> dropRows(DropSettings& drop, bool& no_drop)
 {
-	const auto take_loss = [&drop](const std::string& name, const std::string& text)
-	{
-		drop.hidden_bound = 0.0;
-		if (text != "0")
-		{
-			takeShare(name, text, drop.hidden_bound, false);
-		}
-	};
-	const auto take_box = [&drop](const std::string& name, const std::string& text)
-	{
-		drop.visible_from.push_back(boxOf(name, text));
-	};
 	return {
-		{"--no-drop",
-		 takesFlag(no_drop),
-		 "All volumes: the three --keep options in one",
-		 {.excludes = {{"--drop-below or --drop-hidden or --flat-normals or --visible-from"}}}},
-		{"--keep-unlit",
-		 takesFlag(drop.no_receiver, false),
+		{"--no-drop", takesFlag(no_drop), "All volumes: the three --keep options in one",
+		 excludes("--drop-below or --drop-hidden or --flat-normals or --visible-from")},
+		{"--keep-unlit", takesFlag(drop.no_receiver, false),
 		 "Also volumes that darken nothing: no surface within them sees their polygon",
-		 {.excludes = {{"--visible-from or --flat-normals"}}}},
+		 excludes("--visible-from or --flat-normals")},
 		{"--keep-sides", takesFlag(drop.sides, false), "Also the sides of two-sided polygons that darken nothing"},
 		{"--keep-inside", takesFlag(drop.inside, false), "Also what lies inside solids, where no camera comes"},
 		{"--drop-hidden", takesFlag(drop.hidden),
 		 "Drops sides that see none of the surfaces that they darken, which are behind something opaque (sampled; minutes for some "
 		 "200,000 polygons)"},
-		{"--hidden-loss",
-		 takesParsed("SHARE", take_loss),
+		{"--hidden-loss", takesParsed("SHARE", drop.hidden_bound, lossOf),
 		 "Of occlusion: what a sampled point may lose by --drop-hidden before there is a warning, and with --strict exit code 7 "
 		 "(default: 1/64)",
-		 {.needs = {{"--drop-hidden"}}}},
+		 needs("--drop-hidden")},
 		{"--flat-normals", takesFlag(drop.smooth_normals, false),
 		 "For renderers that shade with the triangles' normals: what would darken nothing but surfaces whose normals are "
 		 "interpolated between vertices is dropped, too"},
-		shareRow(
-			"--drop-below", [&drop]() -> double& { return drop.below; }, true,
-			"Drops the least contributions, as long as no receiver loses more occlusion than this in all: 1/512 (default: none)"),
-		{"--visible-from", takesEach("BOX", take_box),
+		{"--drop-below", takesParsed("SHARE", drop.below, shareUpToOne),
+		 "Drops the least contributions, as long as no receiver loses more occlusion than this in all: 1/512 (default: none)"},
+		{"--visible-from", takesEach("BOX", drop.visible_from, boxOf),
 		 "A box that holds cameras, may be repeated: volumes that darken only what none of them sees are dropped (default: cameras "
 		 "may be anywhere)"}};
 }
@@ -193,10 +159,8 @@ void declare(CLI::App& app, VolumeOptions& options)
 {
 	VolumeSettings& settings = options.settings;
 	addLevelOptions(app, options.level);
-	addOptions(app, {{"--distance",
-					  takesNumber(settings.distance_m, 1e-6, 1e9, "M"),
-					  "How far a polygon darkens what lies before it, metres",
-					  {.required = true}},
+	addOptions(app, {{"--distance", takesNumber(settings.distance_m, 1e-6, 1e9, "M"),
+					  "How far a polygon darkens what lies before it, metres", kRequired},
 					 {"--ray-distance", takesNumber(settings.ray_distance_m, 1e-6, 1e10, "M"),
 					  "Radius of the ray-traced reference with linear falloff that they stand for, metres (default: distance / "
 					  "0.6, or fitted by "
@@ -205,27 +169,26 @@ void declare(CLI::App& app, VolumeOptions& options)
 	addOptions(app, dropRows(settings.drop, options.no_drop));
 	addOptions(
 		app,
-		{shareRow(
-			 "--trim", [&settings]() -> double& { return settings.trim.emplace().share; }, true,
-			 "Makes volumes lower and narrower where no sampled point loses more than this share of the sum of all volumes by that "
-			 "(or of 0.05, where that is more): fewer fragments; 0.1, 0.15 (default: not)"),
+		{{"--trim",
+		  takesParsed("SHARE", [&settings](const std::string& name, const std::string& text)
+					  { settings.trim.emplace().share = shareUpToOne(name, text); }),
+		  "Makes volumes lower and narrower where no sampled point loses more than this share of the sum of all volumes by that "
+		  "(or of 0.05, where that is more): fewer fragments; 0.1, 0.15 (default: not)"},
 		 {"--compensate", takesFlag([&settings] { settings.compensate.emplace(); }),
 		  "Fits the curve from sums of volumes to occlusion to this level, by rays (default: the paper's curve)"},
-		 {"--compensate-measure",
-		  takesChoice(kCurveMeasures, options.measure),
+		 {"--compensate-measure", takesChoice(kCurveMeasures, options.measure),
 		  "What --compensate fits the curve to: the values' RMSE (default), or AOV's eq. 14, mostly differences of neighbours",
-		  {.needs = {{"--compensate"}}}},
+		  needs("--compensate")},
 		 {"--verify", takesFlag([&settings] { settings.verify.emplace(); }),
 		  "Evaluates all volumes and those kept at sampled points, and says how far they differ"},
 		 {"--exact-bounds", takesFlag(settings.exact_bounds),
 		  "Volumes hold every point that they darken; else sharp corners are cut at twice the distance"},
 		 {"--memory", takesBytes(settings.memory_bytes),
 		  "2GiB: refuses a level that may take more, before work starts (default: no limit)"},
-		 {"--degrade",
-		  takesFlag(settings.degrade),
+		 {"--degrade", takesFlag(settings.degrade),
 		  "With --memory: leaves out steps, with a warning, until the level takes no more; refuses it only where that is not "
 		  "enough",
-		  {.needs = {{"--memory"}}}},
+		  needs("--memory")},
 		 {"--layout", takesChoice(kLayouts, options.file.layout),
 		  "polygons: compact, a vertex shader makes the volumes (default); prisms: their points and triangles, too"},
 		 {"--compress", takesFlag(options.file.compress), "Compresses the file's arrays (EXT_meshopt_compression)"}});
@@ -281,8 +244,8 @@ void checkShared(const VolumeSettings& settings)
 	const DropSettings& drop = settings.drop;
 	if (!drop.no_receiver && !drop.sides && !drop.inside && !drop.hidden && drop.below <= 0.0 && !settings.compensate)
 	{
-		throw Error(ExitCode::usage, "--share: found with --no-drop and without --compensate, which leave nothing to share out, "
-									 "expected one run");
+		refuse("--share: found with --no-drop and without --compensate, which leave nothing to share out, "
+			   "expected one run");
 	}
 }
 
@@ -329,17 +292,9 @@ void run(VolumeOptions& options, VerbProgress& progress)
 	Facts facts = verbFacts("volumes");
 	addLevelFacts(facts, loaded);
 	describeBuilt(built, file, settings, quantised, facts);
-	OutputSet files;
-	for (const std::string& path : options.outputs.files)
-	{
-		files.add(path, file.bytes);
-	}
-	addSide(files, options.outputs, facts.json(), loaded.level.files);
-	if (options.outputs.json.empty() && isStdoutFree(options.outputs))
-	{
-		files.add("-", facts.lines());
-	}
-	files.commit();
+	writeOutputs(
+		options.outputs, [&](const std::string&) { return file.bytes; }, facts.json(), loaded.level.files,
+		options.outputs.json.empty() ? facts.lines() : "");
 	if (t_call == nullptr)
 	{
 		times.say();

@@ -2,7 +2,6 @@
 // 128-bit content hash as text. Not cryptographic.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -89,8 +88,6 @@ private:
 	uint64_t m_first = 0xcbf29ce484222325;
 	uint64_t m_second = 0x9e3779b97f4a7c15;
 };
-
-// Content hash of a file (content_hash.h).
 
 // Reads in blocks: a level may have gigabytes. Throws Error (file).
 std::string hashOfFile(const std::string& path);

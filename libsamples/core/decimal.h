@@ -4,7 +4,10 @@
 #pragma once
 
 #include <charconv>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <type_traits>
 
 namespace nook
 {
@@ -22,7 +25,21 @@ std::string decimalOf(double value, std::chars_format format, int digits);
 // Like std::from_chars(first, last, value).
 std::from_chars_result readDecimal(const char* first, const char* last, double& value);
 
-// Numbers → text that reads back as the same number in every locale.
+// The whole text as a number in decimal, or nothing.
+template <class Number> std::optional<Number> numberFrom(std::string_view text)
+{
+	Number value{};
+	std::from_chars_result result{};
+	if constexpr (std::is_floating_point_v<Number>)
+	{
+		result = readDecimal(text.data(), text.data() + text.size(), value);
+	}
+	else
+	{
+		result = std::from_chars(text.data(), text.data() + text.size(), value);
+	}
+	return result.ec == std::errc{} && result.ptr == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
 
 // Shortest decimal: "0.1", "1e-09", "inf".
 inline std::string numberText(double value)

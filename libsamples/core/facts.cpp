@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/facts.h"
 
+#include "core/lists.h"
 #include "core/text.h"
 
 #include <algorithm>
@@ -18,16 +19,6 @@ std::string numberJson(double value)
 	return std::isfinite(value) ? doubleText(value) : "null";
 }
 
-template <class Values, class Text> std::string listJson(const Values& values, const Text& textOf)
-{
-	std::string json;
-	for (const auto& value : values)
-	{
-		json += (json.empty() ? "" : ", ") + textOf(value);
-	}
-	return "[" + json + "]";
-}
-
 // In one line.
 std::string itemJson(std::string_view fields)
 {
@@ -39,106 +30,61 @@ std::string itemJson(std::string_view fields)
 	return "{" + line + " }";
 }
 
-std::string measuresJson(const std::vector<Measure>& measures)
-{
-	std::string json;
-	for (const Measure& measure : measures)
-	{
-		json += (json.empty() ? "\n\t\t" : ",\n\t\t") + jsonText(measure.name) + ": " + numberJson(measure.value);
-	}
-	return "{" + json + "\n\t}";
-}
-
 } // namespace
 
-void Facts::add(std::string_view name, Value value, std::string_view words, std::string_view unit)
+void Facts::add(std::string_view name, std::string json, std::string_view words, std::string shown)
 {
-	m_facts.push_back({std::string(name), std::move(value), std::string(words), std::string(unit)});
+	m_facts.push_back({std::string(name), std::move(json), std::string(words), std::move(shown)});
 }
 
 void Facts::text(std::string_view name, std::string_view value, std::string_view words)
 {
-	add(name, std::string(value), words);
+	add(name, jsonText(value), words, ": " + std::string(value));
 }
 
 void Facts::number(std::string_view name, double value, std::string_view words, std::string_view unit)
 {
-	add(name, value, words, unit);
+	add(name, numberJson(value), words, ": " + roundedText(value, kDigits) + std::string(unit));
 }
 
-void Facts::measures(std::string_view name, std::vector<Measure> values, std::string_view words)
+void Facts::measures(std::string_view name, const std::vector<Measure>& values, std::string_view words)
 {
-	add(name, std::move(values), words);
+	const std::string lines = ":\n" + measureLines(values);
+	add(name, measuresJson(values), words, lines.substr(0, lines.size() - 1));
 }
 
-void Facts::texts(std::string_view name, std::vector<std::string> values)
+void Facts::texts(std::string_view name, const std::vector<std::string>& values)
 {
-	add(name, std::move(values), {});
+	add(name, "[" + joinedText(values, ", ", jsonText) + "]");
 }
 
-void Facts::numbers(std::string_view name, std::vector<double> values)
+void Facts::numbers(std::string_view name, const std::vector<double>& values)
 {
-	add(name, std::move(values), {});
+	add(name, "[" + joinedText(values, ", ", numberJson) + "]");
 }
 
-void Facts::items(std::string_view name, std::vector<Facts> values)
+void Facts::items(std::string_view name, const std::vector<Facts>& values)
 {
-	add(name, std::move(values), {});
+	const auto textOf = [](const Facts& item)
+	{
+		return "\n\t\t" + itemJson(item.fields());
+	};
+	add(name, values.empty() ? "[]" : "[" + joinedText(values, ",", textOf) + "\n\t]");
 }
 
 void Facts::line(std::string_view words)
 {
-	add({}, std::monostate{}, words);
+	add({}, {}, words);
 }
 
 std::string Facts::fields() const
 {
-	struct Json
-	{
-		std::string operator()(std::monostate) const
-		{
-			return "null";
-		}
-		std::string operator()(const std::string& value) const
-		{
-			return jsonText(value);
-		}
-		std::string operator()(uint64_t value) const
-		{
-			return std::to_string(value);
-		}
-		std::string operator()(double value) const
-		{
-			return numberJson(value);
-		}
-		std::string operator()(const std::vector<Measure>& values) const
-		{
-			return measuresJson(values);
-		}
-		std::string operator()(const std::vector<std::string>& values) const
-		{
-			return listJson(values, [](const std::string& value) { return jsonText(value); });
-		}
-		std::string operator()(const std::vector<double>& values) const
-		{
-			return listJson(values, numberJson);
-		}
-		std::string operator()(const std::vector<Facts>& values) const
-		{
-			std::string json;
-			for (const Facts& item : values)
-			{
-				json += (json.empty() ? "\n\t\t" : ",\n\t\t") + itemJson(item.fields());
-			}
-			return json.empty() ? "[]" : "[" + json + "\n\t]";
-		}
-	};
 	std::string json;
 	for (const Fact& fact : m_facts)
 	{
 		if (!fact.name.empty())
 		{
-			json += (json.empty() ? "\n\t" : ",\n\t") + jsonText(fact.name) + ": " + std::visit(Json{}, fact.value);
+			json += (json.empty() ? "\n\t" : ",\n\t") + jsonText(fact.name) + ": " + fact.json;
 		}
 	}
 	return json;
@@ -151,29 +97,16 @@ std::string Facts::json() const
 
 std::string Facts::lines() const
 {
-	std::string lines;
-	for (const Fact& fact : m_facts)
+	return joinedText(m_facts, "", [](const Fact& fact) { return fact.words.empty() ? "" : fact.words + fact.shown + "\n"; });
+}
+
+std::string measuresJson(const std::vector<Measure>& measures)
+{
+	const auto textOf = [](const Measure& measure)
 	{
-		if (fact.words.empty())
-		{
-			continue;
-		}
-		lines += fact.words;
-		if (const auto* const measures = std::get_if<std::vector<Measure>>(&fact.value))
-		{
-			lines += ":\n" + measureLines(*measures);
-			continue;
-		}
-		const auto* const text = std::get_if<std::string>(&fact.value);
-		const auto* const whole = std::get_if<uint64_t>(&fact.value);
-		const auto* const number = std::get_if<double>(&fact.value);
-		lines += text != nullptr     ? ": " + *text
-				 : whole != nullptr  ? ": " + std::to_string(*whole)
-				 : number != nullptr ? ": " + roundedText(*number, kDigits)
-									 : "";
-		lines += fact.unit + "\n";
-	}
-	return lines;
+		return "\n\t\t" + jsonText(measure.name) + ": " + numberJson(measure.value);
+	};
+	return "{" + joinedText(measures, ",", textOf) + "\n\t}";
 }
 
 std::string measureLines(const std::vector<Measure>& measures)

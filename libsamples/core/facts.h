@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 namespace nook
@@ -25,18 +24,18 @@ class Facts
 public:
 	void text(std::string_view name, std::string_view value, std::string_view words = {});
 	void number(std::string_view name, double value, std::string_view words = {}, std::string_view unit = {});
-	void measures(std::string_view name, std::vector<Measure> values, std::string_view words = {});
-	void texts(std::string_view name, std::vector<std::string> values);
-	void numbers(std::string_view name, std::vector<double> values);
-	void items(std::string_view name, std::vector<Facts> values); // one per line
+	void measures(std::string_view name, const std::vector<Measure>& values, std::string_view words = {});
+	void texts(std::string_view name, const std::vector<std::string>& values);
+	void numbers(std::string_view name, const std::vector<double>& values);
+	void items(std::string_view name, const std::vector<Facts>& values); // one per line
 	template <std::integral Whole> void whole(std::string_view name, Whole value, std::string_view words = {})
 	{
-		add(name, static_cast<uint64_t>(value), words);
+		add(name, std::to_string(static_cast<uint64_t>(value)), words, ": " + std::to_string(static_cast<uint64_t>(value)));
 	}
 	// One reason of a count above it: an indented line, unless it is 0.
 	template <std::integral Whole> void reason(std::string_view name, Whole value, std::string_view words)
 	{
-		add(name, static_cast<uint64_t>(value), value == Whole{} ? std::string() : "  " + std::string(words));
+		whole(name, value, value == Whole{} ? std::string() : "  " + std::string(words));
 	}
 
 	// For people alone: a whole line, without its end.
@@ -46,23 +45,22 @@ public:
 	std::string lines() const; // of the facts that have words
 
 private:
-	using Value = std::variant<std::monostate, std::string, uint64_t, double, std::vector<Measure>, std::vector<std::string>,
-							   std::vector<double>, std::vector<Facts>>;
 	struct Fact
 	{
 		std::string name;
-		Value value;
+		std::string json;
 		std::string words;
-		std::string unit;
+		std::string shown; // behind the words
 	};
 
-	void add(std::string_view name, Value value, std::string_view words, std::string_view unit = {});
+	void add(std::string_view name, std::string json, std::string_view words = {}, std::string shown = {});
 	std::string fields() const;
 
 	std::vector<Fact> m_facts;
 };
 
-// Measures for people, one per line in columns.
+// Measures as a JSON object, one per line; and for people, one per line in columns.
+std::string measuresJson(const std::vector<Measure>& measures);
 std::string measureLines(const std::vector<Measure>& measures);
 
 } // namespace nook

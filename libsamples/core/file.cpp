@@ -2,15 +2,14 @@
 #include "core/file.h"
 
 #include "core/error.h"
+#include "core/lists.h"
 #include "core/system.h"
 
-#include <atomic>
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
-#include <cstddef>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -82,6 +81,136 @@ void writeDirectly(const std::string& path, const std::string& name, std::string
 	{
 		fail(name, "written", errno);
 	}
+}
+
+enum class Side
+{
+	target,
+	source,
+};
+
+// Ninja ends a name at each of these and cannot escape them. In Make, ; and != start commands, = sets a variable and the others are
+// globs, except " & ' < > ^ ` |.
+constexpr std::string_view kNever = "\"&'*;<=>?[^`|";
+// At a name's end these escape what follows (\ and blank), end a Ninja target (:) or mark an archive member in Make.
+constexpr std::string_view kNeverLast = " \\:)";
+// Make and Ninja disagree on how many backslashes escape these after a literal backslash.
+constexpr std::string_view kNeverBehindBackslash = "#:$%";
+
+std::string spoken(char c)
+{
+	const auto code = static_cast<unsigned char>(c);
+	if (code > 0x20 && code != 0x7F)
+	{
+		return std::string("'") + c + "'";
+	}
+	char text[8];
+	std::snprintf(text, sizeof text, "\\x%02X", code);
+	return c == ' ' ? "a blank" : c == '\n' || c == '\r' ? "a line break" : text;
+}
+
+void check(const std::string& path, Side side)
+{
+	const auto refuse = [&](char c, const char* where)
+	{
+		throw Error(ExitCode::unsupported,
+					path + ": found " + spoken(c) + where + ", expected a name that a depfile for Make and Ninja can hold");
+	};
+	std::size_t start = 0;
+	while (path.compare(start, 2, "./") == 0)
+	{
+		start = std::min(path.find_first_not_of('/', start + 1), path.size());
+	}
+	if (path.compare(start, 1, "~") == 0) // Make expands ~ even after a stripped ./
+	{
+		refuse('~', " at the start");
+	}
+	for (std::size_t i = 0; i < path.size(); ++i)
+	{
+		const char c = path[i];
+		const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+		if (control || kNever.find(c) != std::string_view::npos ||
+			(side == Side::target && c == '%')) // % in a target makes a pattern rule
+		{
+			refuse(c, "");
+		}
+		if (i > 0 && path[i - 1] == '\\' && kNeverBehindBackslash.find(c) != std::string_view::npos)
+		{
+			refuse(c, " behind a backslash");
+		}
+	}
+	if (path.empty() || kNeverLast.find(path.back()) != std::string_view::npos)
+	{
+		refuse(path.empty() ? ' ' : path.back(), " at the end");
+	}
+}
+
+std::string escaped(const std::string& path, Side side)
+{
+	check(path, side);
+	std::string text;
+	std::size_t backslashes = 0; // number directly before the current character
+	for (const char c : path)
+	{
+		if (c == ' ')
+		{
+			text.append(backslashes, '\\'); // before a blank, backslashes must be escaped; elsewhere they are literal
+		}
+		if (c == ' ' || c == '#' || c == ':')
+		{
+			text += '\\';
+		}
+		if (c == '$')
+		{
+			text += '$';
+		}
+		text += c;
+		backslashes = c == '\\' ? backslashes + 1 : 0;
+	}
+	return text;
+}
+
+std::string textOf(const std::filesystem::path& path)
+{
+	const std::u8string text = path.u8string();
+	return {text.begin(), text.end()};
+}
+
+constexpr int kEnding = -1;
+std::atomic<int> held{0};    // nesting depth of holds, or kEnding
+std::atomic<int> pending{0}; // signal received meanwhile
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<void*>::is_always_lock_free);
+
+// While another thread ends the program, no file may be created or renamed.
+void waitIfEnding()
+{
+	while (held == kEnding)
+	{
+		waitForEnd();
+	}
+}
+
+// Runs in a signal handler: async-signal-safe calls only.
+void end(int signal)
+{
+	const int before = errno;
+	int free = 0;
+	while (!held.compare_exchange_strong(free, kEnding))
+	{
+		if (free == kEnding)
+		{
+			return; // a second signal
+		}
+		pending = signal;
+		if (held != 0)
+		{
+			errno = before;
+			return; // ~SignalsHeld() handles it
+		}
+		free = 0;
+	}
+	removeTemporaryFiles();
+	endBySignal(signal);
 }
 
 } // namespace
@@ -281,48 +410,6 @@ struct TemporaryFile::Entry
 
 std::atomic<TemporaryFile::Entry*> TemporaryFile::s_entries{nullptr};
 
-namespace
-{
-
-constexpr int kEnding = -1;
-std::atomic<int> held{0};    // nesting depth of holds, or kEnding
-std::atomic<int> pending{0}; // signal received meanwhile
-static_assert(std::atomic<int>::is_always_lock_free && std::atomic<void*>::is_always_lock_free);
-
-// While another thread ends the program, no file may be created or renamed.
-void waitIfEnding()
-{
-	while (held == kEnding)
-	{
-		waitForEnd();
-	}
-}
-
-// Runs in a signal handler: async-signal-safe calls only.
-void end(int signal)
-{
-	const int before = errno;
-	int free = 0;
-	while (!held.compare_exchange_strong(free, kEnding))
-	{
-		if (free == kEnding)
-		{
-			return; // a second signal
-		}
-		pending = signal;
-		if (held != 0)
-		{
-			errno = before;
-			return; // ~SignalsHeld() handles it
-		}
-		free = 0;
-	}
-	removeTemporaryFiles();
-	endBySignal(signal);
-}
-
-} // namespace
-
 void handleSignals()
 {
 	onEndingSignals(&end);
@@ -424,17 +511,6 @@ void TemporaryFile::rename(const std::string& target, std::error_code& failed)
 	}
 }
 
-namespace
-{
-
-std::string textOf(const std::filesystem::path& path)
-{
-	const std::u8string text = path.u8string();
-	return {text.begin(), text.end()};
-}
-
-} // namespace
-
 void NewFolders::make(const std::filesystem::path& path, std::error_code& failed)
 {
 	failed.clear();
@@ -487,6 +563,16 @@ std::string unescaped(const std::string& uri)
 		}
 	}
 	return text;
+}
+
+std::string depfileText(std::span<const std::string> targets, std::span<const std::string> sources)
+{
+	std::string text = joinedText(targets, " ", [](const std::string& target) { return escaped(target, Side::target); }) + ":";
+	for (const std::string& source : sources)
+	{
+		text += " \\\n  " + escaped(source, Side::source);
+	}
+	return text + "\n";
 }
 
 } // namespace nook

@@ -132,15 +132,11 @@ private:
 	std::vector<Direct> m_directs;
 };
 
-// URI-escaped names in glTF.
-
-// "a%20b.png" → "a b.png"; a % without a valid code stays.
+// Names in glTF: "a%20b.png" → "a b.png"; a % without a valid code stays.
 std::string unescaped(const std::string& uri);
 
-// Writes a dependency rule that GNU Make and Ninja read alike.
-
-// "target…: source…" with each path escaped. Throws Error (unsupported) for a path that Make 4.3 or Ninja 1.11 cannot hold: in a
-// makefile it could run a command, and in Ninja's log it could name another file.
+// A rule for GNU Make and Ninja: "target…: source…" with each path escaped. Throws Error (unsupported) for a path that Make 4.3 or
+// Ninja 1.11 cannot hold: in a makefile it could run a command, and in Ninja's log it could name another file.
 std::string depfileText(std::span<const std::string> targets, std::span<const std::string> sources);
 
 } // namespace nook

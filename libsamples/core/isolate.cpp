@@ -2,7 +2,6 @@
 #include "core/isolate.h"
 
 #include "core/error.h"
-#include "core/value_stream.h"
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -16,14 +15,12 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <map>
 #include <memory>
 #include <mutex>
-#include <string>
 #include <vector>
 
 namespace nook
@@ -45,8 +42,10 @@ public:
 		return m_socket;
 	}
 
-	// The worker's private resident memory; 0 if unknown.
-	std::size_t residentBytes() const;
+	std::size_t residentBytes() const
+	{
+		return memoryOf(std::to_string(m_process)).resident_bytes;
+	}
 
 	// Closes the socket, so that a worker that still writes ends, and waits; returns waitpid()'s status.
 	int end();
@@ -253,21 +252,6 @@ void WorkerProcess::stop()
 		::kill(m_process, SIGKILL);
 		end();
 	}
-}
-
-std::size_t WorkerProcess::residentBytes() const
-{
-	std::size_t pages = 0;
-	std::FILE* const file = std::fopen(("/proc/" + std::to_string(m_process) + "/statm").c_str(), "re");
-	if (file != nullptr)
-	{
-		if (std::fscanf(file, "%*u %zu", &pages) != 1)
-		{
-			pages = 0;
-		}
-		std::fclose(file);
-	}
-	return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
 int WorkerProcess::end()

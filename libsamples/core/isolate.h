@@ -6,7 +6,6 @@
 // not a fork, so that it shares no locks, threads or memory, and so that nook does not load the libraries it links.
 #pragma once
 
-#include "core/error.h"
 #include "core/value_stream.h"
 
 #include <cstddef>

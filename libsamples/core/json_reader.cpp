@@ -4,11 +4,11 @@
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "core/text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <set>
 
 namespace nook
@@ -40,68 +40,28 @@ std::string describe(const json& value)
 }
 
 // Stops at the first field that an object has twice.
-struct TwiceWatch : nlohmann::json_sax<json>
+struct TwiceWatch : nlohmann::detail::json_sax_acceptor<json>
 {
 	std::vector<std::set<std::string>> seen; // fields of the open objects
 	std::optional<std::string> twice;
 
-	bool null() override
-	{
-		return true;
-	}
-	bool boolean(bool /*value*/) override
-	{
-		return true;
-	}
-	bool number_integer(number_integer_t /*value*/) override
-	{
-		return true;
-	}
-	bool number_unsigned(number_unsigned_t /*value*/) override
-	{
-		return true;
-	}
-	bool number_float(number_float_t /*value*/, const string_t& /*text*/) override
-	{
-		return true;
-	}
-	bool string(string_t& /*value*/) override
-	{
-		return true;
-	}
-	bool binary(binary_t& /*value*/) override
-	{
-		return true;
-	}
-	bool start_array(std::size_t /*size*/) override
-	{
-		return true;
-	}
-	bool end_array() override
-	{
-		return true;
-	}
-	bool start_object(std::size_t /*size*/) override
+	bool start_object(std::size_t /*size*/)
 	{
 		seen.emplace_back();
 		return true;
 	}
-	bool end_object() override
+	bool end_object()
 	{
 		seen.pop_back();
 		return true;
 	}
-	bool key(string_t& name) override
+	bool key(string_t& name)
 	{
 		if (!seen.back().insert(name).second)
 		{
 			twice = name;
 		}
 		return !twice;
-	}
-	bool parse_error(std::size_t /*at*/, const std::string& /*token*/, const nlohmann::detail::exception& /*error*/) override
-	{
-		return false;
 	}
 };
 
@@ -191,12 +151,7 @@ void JsonValue::allowOnly(std::initializer_list<std::string_view> fields) const
 	{
 		if (std::find(fields.begin(), fields.end(), item.key()) == fields.end())
 		{
-			std::string names;
-			for (const std::string_view field : fields)
-			{
-				names += (names.empty() ? "" : ", ") + std::string(field);
-			}
-			fail("the unknown field " + describe(json(item.key())), "one of " + names);
+			fail("the unknown field " + describe(json(item.key())), "one of " + joinedText(fields, ", "));
 		}
 	}
 }
@@ -302,13 +257,7 @@ JsonValue JsonValue::item(std::string_view field, std::size_t index) const
 
 std::vector<JsonValue> JsonValue::objects(std::string_view field) const
 {
-	std::vector<JsonValue> found;
-	const std::size_t n = count(field);
-	for (std::size_t i = 0; i < n; ++i)
-	{
-		found.push_back(item(field, i));
-	}
-	return found;
+	return listOf(count(field), [&](std::size_t i) { return item(field, i); });
 }
 
 std::optional<uint64_t> JsonValue::whole(std::string_view field, uint64_t most) const
@@ -333,13 +282,7 @@ std::size_t JsonValue::indexNeeded(std::string_view field, std::size_t size) con
 
 std::vector<std::size_t> JsonValue::indices(std::string_view field, std::size_t size) const
 {
-	std::vector<std::size_t> found;
-	const std::size_t n = count(field);
-	for (std::size_t i = 0; i < n; ++i)
-	{
-		found.push_back(at(field).at(i).indexInto(size));
-	}
-	return found;
+	return listOf(count(field), [&](std::size_t i) { return at(field).at(i).indexInto(size); });
 }
 
 double JsonValue::number(std::string_view field, double otherwise) const
@@ -354,17 +297,11 @@ double JsonValue::numberNeeded(std::string_view field) const
 
 std::vector<double> JsonValue::numbers(std::string_view field, std::size_t size) const
 {
-	std::vector<double> found;
 	if (has(field) && at(field).arraySize() != size)
 	{
 		at(field).expected("an array of " + std::to_string(size) + " numbers");
 	}
-	const std::size_t n = count(field);
-	for (std::size_t i = 0; i < n; ++i)
-	{
-		found.push_back(at(field).at(i).number());
-	}
-	return found;
+	return listOf(count(field), [&](std::size_t i) { return at(field).at(i).number(); });
 }
 
 bool JsonValue::boolean(std::string_view field, bool otherwise) const
@@ -379,13 +316,7 @@ std::string JsonValue::text(std::string_view field, const std::string& otherwise
 
 std::vector<std::string> JsonValue::texts(std::string_view field) const
 {
-	std::vector<std::string> found;
-	const std::size_t n = count(field);
-	for (std::size_t i = 0; i < n; ++i)
-	{
-		found.push_back(at(field).at(i).string());
-	}
-	return found;
+	return listOf(count(field), [&](std::size_t i) { return at(field).at(i).string(); });
 }
 
 std::string JsonValue::name() const

@@ -3,7 +3,6 @@
 
 #include "core/content_hash.h"
 #include "core/error.h"
-#include "core/file.h"
 #include "core/system.h"
 
 #include <cerrno>

@@ -41,8 +41,6 @@ std::string xmlText(std::string_view text);
 // True for a valid identifier in C, GLSL and HLSL: letters, digits and single underscores, starting with a letter, not "gl_…".
 bool isIdentifier(std::string_view name);
 
-// Memory sizes for messages about need and limit.
-
 // Needs are rounded up and limits down, so the two never read the same.
 inline std::string needText(uint64_t bytes)
 {
@@ -54,8 +52,7 @@ inline std::string capText(uint64_t bytes)
 	return bytes < (uint64_t{1} << 20U) ? std::to_string(bytes) + " bytes" : std::to_string(bytes >> 20U) + " MiB";
 }
 
-// Comment lines stored in output files.
-
+// A comment of an output file.
 struct Note
 {
 	std::string key;

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 
 #include <sys/socket.h>
+#include <unistd.h>
 
 namespace nook
 {
@@ -17,6 +19,21 @@ constexpr std::size_t kChunkBytes = std::size_t{1} << 16U;
 constexpr std::size_t kMaxTextBytes = std::size_t{1} << 20U;
 
 } // namespace
+
+ProcessMemory memoryOf(const std::string& process)
+{
+	ProcessMemory memory;
+	if (std::FILE* const file = std::fopen(("/proc/" + process + "/statm").c_str(), "re"); file != nullptr)
+	{
+		const auto page_bytes = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+		std::size_t mapped = 0;
+		std::size_t resident = 0;
+		memory = std::fscanf(file, "%zu %zu", &mapped, &resident) == 2 ? ProcessMemory{page_bytes * mapped, page_bytes * resident}
+																	   : memory;
+		std::fclose(file);
+	}
+	return memory;
+}
 
 // The stream consists of chunks: a size, then that many bytes. Size 0 ends it, followed by a code and a message.
 void ValueWriter::chunk(const void* data, std::size_t size)

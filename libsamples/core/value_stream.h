@@ -21,6 +21,14 @@ struct StreamEnded
 	const char* found = nullptr; // null: use the other process's exit status
 };
 
+// Memory of a process, by its number or "self"; 0 if unknown.
+struct ProcessMemory
+{
+	std::size_t mapped_bytes = 0;
+	std::size_t resident_bytes = 0;
+};
+ProcessMemory memoryOf(const std::string& process);
+
 class ValueWriter
 {
 public:

@@ -2,14 +2,12 @@
 #include "core/work_units.h"
 
 #include "core/content_hash.h"
-#include "core/error.h"
+#include "core/lists.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/system.h"
 
 #include <algorithm>
-#include <mutex>
-#include <numeric>
 #include <queue>
 #include <utility>
 
@@ -20,12 +18,7 @@ namespace
 
 std::vector<double> costsOf(const WorkStage& stage)
 {
-	std::vector<double> costs(stage.count);
-	for (std::size_t i = 0; i < stage.count; ++i)
-	{
-		costs[i] = stage.cost(i);
-	}
-	return costs;
+	return listOf(stage.count, stage.cost);
 }
 
 // The most expensive first, so that no thread is left with one of them at the end.
@@ -46,11 +39,9 @@ void computeAll(const WorkStage& stage, std::vector<std::size_t> units, std::spa
 				});
 }
 
-std::vector<std::size_t> allUnits(const WorkStage& stage)
+std::vector<std::size_t> countingTo(std::size_t count)
 {
-	std::vector<std::size_t> all(stage.count);
-	std::iota(all.begin(), all.end(), std::size_t{0});
-	return all;
+	return listOf(count, [](std::size_t i) { return i; });
 }
 
 std::string keyFrom(std::span<const std::string> identity, std::span<const std::string> inputs, std::span<const std::string> hashes,
@@ -93,8 +84,7 @@ void visit(Archive& archive, DoneNote& note)
 
 std::vector<int> dealUnits(std::span<const double> costs, std::vector<double>& loads)
 {
-	std::vector<std::size_t> order(costs.size());
-	std::iota(order.begin(), order.end(), std::size_t{0});
+	std::vector<std::size_t> order = countingTo(costs.size());
 	std::sort(order.begin(), order.end(),
 			  [&](std::size_t a, std::size_t b)
 			  {
@@ -146,7 +136,7 @@ std::vector<std::size_t> WorkUnits::ownUnits(const WorkStage& stage, std::span<c
 {
 	if (!m_share)
 	{
-		return allUnits(stage);
+		return countingTo(stage.count);
 	}
 	std::vector<std::string> names(stage.count);
 	std::map<std::string, double> sums; // of groups without an owner; their order is that of their names
@@ -157,12 +147,7 @@ std::vector<std::size_t> WorkUnits::ownUnits(const WorkStage& stage, std::span<c
 		const auto owner = m_owners.find(names[i]);
 		(owner != m_owners.end() ? m_loads[static_cast<std::size_t>(owner->second)] : sums[names[i]]) += costs[i];
 	}
-	std::vector<double> fresh;
-	for (const auto& [name, cost] : sums)
-	{
-		fresh.push_back(cost);
-	}
-	const std::vector<int> dealt = dealUnits(fresh, m_loads);
+	const std::vector<int> dealt = dealUnits(mapped(sums, [](const auto& sum) { return sum.second; }), m_loads);
 	std::size_t next = 0;
 	for (const auto& [name, cost] : sums)
 	{
@@ -232,7 +217,7 @@ void runStage(const WorkStage& stage, const RunSettings& run)
 		run.units->run(stage, run);
 		return;
 	}
-	computeAll(stage, allUnits(stage), costsOf(stage), run);
+	computeAll(stage, countingTo(stage.count), costsOf(stage), run);
 }
 
 void runOnce(const std::string& name, const std::function<void()>& compute, const Visitor& pass, const RunSettings& run)

@@ -31,21 +31,6 @@ constexpr bool kLimitAddresses = true;
 constexpr bool kLimitAddresses = true;
 #endif
 
-std::size_t mappedBytes()
-{
-	std::size_t pages = 0;
-	std::FILE* const file = std::fopen("/proc/self/statm", "re");
-	if (file != nullptr)
-	{
-		if (std::fscanf(file, "%zu", &pages) != 1)
-		{
-			pages = 0;
-		}
-		std::fclose(file);
-	}
-	return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-}
-
 rlim_t processorSeconds()
 {
 	rusage used{};
@@ -121,7 +106,7 @@ private:
 	bool limit(const RequestHead& head) const
 	{
 		m_processor.set(head.limited ? processorSeconds() + static_cast<rlim_t>(head.processor_s) : RLIM_INFINITY);
-		const std::size_t mapped = mappedBytes();
+		const std::size_t mapped = memoryOf("self").mapped_bytes;
 		return m_addresses.set(head.limited && kLimitAddresses && mapped > 0 ? mapped + head.memory_bytes : RLIM_INFINITY);
 	}
 

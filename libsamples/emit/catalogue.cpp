@@ -4,7 +4,6 @@
 #include "core/work_units.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
-#include "pattern/recipe.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -6,7 +6,6 @@
 #include "pattern/recipe.h"
 #include "pattern/tile.h"
 
-#include <optional>
 #include <string>
 #include <vector>
 

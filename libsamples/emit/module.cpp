@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit/module.h"
 
+#include "core/lists.h"
 #include "emit/module_parts.h"
 #include "format/source_text.h"
 #include "methods/assets.h"
-#include "methods/block.h"
 #include "methods/kernel_text.h"
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cctype>
 #include <set>
 
@@ -279,13 +278,13 @@ std::string arrayText(const ModuleSettings& settings, const std::string& type, c
 					  const std::vector<std::string>& elements, const std::string& before, const std::string& space)
 {
 	const std::string size = "[" + std::to_string(elements.size()) + "]";
-	std::string text = (isHlsl(settings) ? "static const " : "const ") + type + " " + name + size + " = " +
-					   (isHlsl(settings) ? "{" : type + size + "(") + before;
-	for (const std::string& element : elements)
+	const auto textOf = [&type](const std::string& element)
 	{
-		text += type + "(" + element + ")" + (&element != &elements.back() ? "," + space : "");
-	}
-	return text + (isHlsl(settings) ? "};\n" : ");\n");
+		return type + "(" + element + ")";
+	};
+	return (isHlsl(settings) ? "static const " : "const ") + type + " " + name + size + " = " +
+		   (isHlsl(settings) ? "{" : type + size + "(") + before + joinedText(elements, "," + space, textOf) +
+		   (isHlsl(settings) ? "};\n" : ");\n");
 }
 
 std::string columnsText(const ModuleMethod& method)
@@ -322,12 +321,7 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 	else
 	{
 		text += window > 1 ? "; those of one variant after the other.\n" : ".\n";
-		std::vector<std::string> rows;
-		for (const Sample& sample : rowsOf(method))
-		{
-			rows.push_back(rowText(sample));
-		}
-		text += arrayText(settings, "vec4", name, rows, "\n\t", "\n\t");
+		text += arrayText(settings, "vec4", name, mapped(rowsOf(method), rowText), "\n\t", "\n\t");
 		const std::string at = window > 1 ? "row * " + count + " + i" : "i";
 		text += "vec4 " + function + "(int row, int i)\n{\n\treturn " + name + "[" + at + "];\n}\n";
 	}
@@ -336,12 +330,11 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 	const std::string frame = "int(nook.frame) % " + std::to_string(method.frames);
 	if (!method.moves.empty())
 	{
-		std::vector<std::string> moves;
-		for (const glm::ivec2& move : method.moves)
+		const auto textOf = [](const glm::ivec2& move)
 		{
-			moves.push_back(std::to_string(move.x) + ", " + std::to_string(move.y));
-		}
-		text += arrayText(settings, "ivec2", stemOf(row) + "_moves", moves, "", " ");
+			return std::to_string(move.x) + ", " + std::to_string(move.y);
+		};
+		text += arrayText(settings, "ivec2", stemOf(row) + "_moves", mapped(method.moves, textOf), "", " ");
 		variant =
 			"(nookRow(pixel.y)" + cell + " + move.y) % " + side + " * " + side + " + (pixel.x" + cell + " + move.x) % " + side;
 		return text + "int " + entry + "Variant(ivec2 pixel)\n{\n\tivec2 move = " + stemOf(row) + "_moves[" + frame +
@@ -530,34 +523,24 @@ bool fromTexture(const ModuleSettings& settings, const ModuleMethod& method)
 
 std::string guardOf(const ModuleSettings& settings)
 {
-	std::string guard = "NOOK";
-	for (const ModuleMethod& method : settings.methods)
-	{
-		guard += macroOf(rowOf(method.method)).substr(4);
-	}
-	return guard;
+	return "NOOK" +
+		   joinedText(settings.methods, "", [](const ModuleMethod& method) { return macroOf(rowOf(method.method)).substr(4); });
 }
 
 std::vector<Sample> rowsOf(const ModuleMethod& method)
 {
-	std::vector<Sample> rows;
-	for (const glm::vec4& sample : samplesOf(method.method, method.variants, layersOf(method)).samples)
-	{
-		rows.push_back({sample.x, sample.y, sample.z, sample.w});
-	}
-	return rows;
+	return mapped(samplesOf(method.method, method.variants, layersOf(method)).samples,
+				  [](const glm::vec4& sample) {
+					  return Sample{sample.x, sample.y, sample.z, sample.w};
+				  });
 }
 
 std::vector<Sample> texelsOf(const ModuleMethod& method)
 {
 	const std::vector<Sample> rows = rowsOf(method);
 	const std::size_t count = method.variants.front().count();
-	std::vector<Sample> texels;
-	for (std::size_t i = 0; i < rows.size(); ++i)
-	{
-		texels.push_back(rows[i % method.variants.size() * count + i / method.variants.size()]);
-	}
-	return texels;
+	const std::size_t variants = method.variants.size();
+	return listOf(rows.size(), [&](std::size_t i) { return rows[i % variants * count + i / variants]; });
 }
 
 bool readsNormals(const ModuleSettings& settings)

@@ -131,8 +131,6 @@ std::string modulePython(const ModuleSettings& settings, const EmitContext& cont
 // "schema": "nook.module/1", one line: the members of the block with types and offsets, settings per method, and texels.
 std::string moduleJson(const ModuleSettings& settings, const EmitContext& context);
 
-// Emits one GLSL file with the shader stages that draw a file of volumes.
-
 // Volumes can be drawn with OpenGL 3.3 and 4.3 only.
 constexpr bool drawsVolumes(GlslTarget target)
 {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/decimal.h"
 #include "core/text.h"
 #include "emit/module.h"
 #include "emit/module_parts.h"
@@ -92,6 +91,29 @@ std::string floatBlockText(const ModuleSettings& settings)
 		   numbers + "\treturn nullptr;\n}\n\n#endif // NOOK_FLOAT_BLOCK_H\n";
 }
 
+bool isInteger(const BlockMember& member)
+{
+	return member.type[0] == 'i';
+}
+
+bool isWordPart(char c)
+{
+	return c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z');
+}
+
+// Replaces a word in a line's code.
+std::string exchanged(std::string line, const std::string& word, const std::string& with)
+{
+	for (std::size_t at = line.find(word); at != std::string::npos && at < line.find("//"); at = line.find(word, at))
+	{
+		const std::size_t end = at + word.size();
+		const bool whole = end == line.size() || !isWordPart(line[end]);
+		line.replace(at, word.size(), whole ? with : word);
+		at += whole ? with.size() : word.size();
+	}
+	return line;
+}
+
 } // namespace
 
 std::string moduleHeader(const ModuleSettings& settings, const EmitContext& context)
@@ -121,36 +143,6 @@ std::string moduleHeader(const ModuleSettings& settings, const EmitContext& cont
 		   std::string(block.substr(block.find("#ifndef"))) + (settings.float_block ? floatBlockText(settings) : "") + tiles +
 		   "\n#endif // " + guard + "\n";
 }
-
-// The uniform block of a module. Its integers may be emitted as floats.
-
-namespace
-{
-
-bool isInteger(const BlockMember& member)
-{
-	return member.type[0] == 'i';
-}
-
-bool isWordPart(char c)
-{
-	return c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z');
-}
-
-// Replaces a word in a line's code.
-std::string exchanged(std::string line, const std::string& word, const std::string& with)
-{
-	for (std::size_t at = line.find(word); at != std::string::npos && at < line.find("//"); at = line.find(word, at))
-	{
-		const std::size_t end = at + word.size();
-		const bool whole = end == line.size() || !isWordPart(line[end]);
-		line.replace(at, word.size(), whole ? with : word);
-		at += whole ? with.size() : word.size();
-	}
-	return line;
-}
-
-} // namespace
 
 std::string typeOf(const ModuleSettings& settings, const BlockMember& member)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The passes of a module: their functions, their constants, and a description of what to draw.
 #include "core/decimal.h"
+#include "core/lists.h"
 #include "emit/module_parts.h"
 #include "methods/block.h"
 #include "methods/passes.h"
@@ -281,12 +282,11 @@ std::string passesText(const ModuleSettings& settings, const ModuleMethod& metho
 // Sum over all passes, per pixel of the picture.
 std::string totalText(const ModuleSettings& settings, const ModuleMethod& method)
 {
-	double reads = 0.0;
-	for (const ShadePass& pass : planFor(settings, method).passes)
+	const auto readsBy = [&](const ShadePass& pass)
 	{
-		reads += pass.fills ? 0.0 : texelsOf(pass) * depthReadsOf(settings, method, pass);
-	}
-	return numberText(reads);
+		return pass.fills ? 0.0 : texelsOf(pass) * depthReadsOf(settings, method, pass);
+	};
+	return numberText(sumOver(planFor(settings, method).passes, readsBy));
 }
 
 // "3 samples at each of 3 radii, other ones in each pixel of 4 x 4"
@@ -310,12 +310,7 @@ std::string countsText(const ModuleSettings& settings, const ModuleMethod& metho
 // The radius and other values of a recipe, as set by nook_..._settings(reach).
 std::string presetsText(const ModuleSettings& settings, const ModuleMethod& method)
 {
-	std::string text;
-	for (const auto& [name, value] : presetsOf(settings, method))
-	{
-		text += (text.empty() ? "" : ", ") + name + " = " + value;
-	}
-	return text;
+	return joinedText(presetsOf(settings, method), ", ", [](const auto& preset) { return preset.first + " = " + preset.second; });
 }
 
 } // namespace
@@ -345,11 +340,7 @@ std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleM
 	for (const ShadePass& pass : planFor(settings, method).passes)
 	{
 		const std::string call = pass.kernel.call;
-		const auto same = [&call](const ModuleEntry& entry)
-		{
-			return entry.call == call;
-		};
-		if (std::any_of(entries.begin(), entries.end(), same))
+		if (std::any_of(entries.begin(), entries.end(), [&call](const ModuleEntry& entry) { return entry.call == call; }))
 		{
 			continue;
 		}
@@ -382,11 +373,7 @@ std::vector<ModulePass> mainPasses(const ModuleSettings& settings)
 		entry = pass.of_pixel ? pass.kernel.call : entry;
 		const bool of_cell = pass.of_pixel && shade.half_resolution && pass.packing == ShadePacking::none;
 		const std::string call = pass.fills ? entry + "Full(at)" : moduleCallOf(pass) + (of_cell ? "(2 * at)" : "(at)");
-		const auto same = [&call](const ModulePass& one)
-		{
-			return one.call == call;
-		};
-		if (std::any_of(passes.begin(), passes.end(), same))
+		if (std::any_of(passes.begin(), passes.end(), [&call](const ModulePass& one) { return one.call == call; }))
 		{
 			continue;
 		}

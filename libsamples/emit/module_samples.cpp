@@ -2,6 +2,7 @@
 #include "emit/module.h"
 
 #include "core/error.h"
+#include "core/lists.h"
 #include "format/input.h"
 #include "pattern/cells.h"
 
@@ -56,11 +57,7 @@ void shorten(const TileFile& file, std::size_t count, const std::string& path, s
 		}
 		variant.points.resize(count);
 		variant.weights.resize(count);
-		double sum = 0.0;
-		for (const double w : variant.weights)
-		{
-			sum += w;
-		}
+		const double sum = sumOver(variant.weights);
 		if (!(sum > 0.0))
 		{
 			throw Error(ExitCode::invalid_input, path + ": --counts: found a variant whose first " + std::to_string(count) +

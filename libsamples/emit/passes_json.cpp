@@ -2,6 +2,7 @@
 // The passes, pictures and uniform block of one picture as JSON, for programs that draw emitted modules.
 #include "core/base64.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "emit/module.h"
 #include "methods/block.h"
 #include "methods/method_table.h"
@@ -33,11 +34,8 @@ PassesJson tileJson(const ShadeSamples& samples)
 {
 	const auto count = static_cast<std::size_t>(samples.count);
 	const std::size_t variants = samples.samples.size() / count;
-	std::vector<glm::vec4> texels;
-	for (std::size_t i = 0; i < samples.samples.size(); ++i)
-	{
-		texels.push_back(samples.samples[i % variants * count + i / variants]);
-	}
+	const std::vector<glm::vec4> texels =
+		listOf(samples.samples.size(), [&](std::size_t i) { return samples.samples[i % variants * count + i / variants]; });
 	return {{"width", variants}, {"height", count}, {"texels", base64OfBytes(texels.data(), texels.size() * sizeof(glm::vec4))}};
 }
 

@@ -2,6 +2,7 @@
 #include "core/file.h"
 #include "core/json_reader.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "farm/plan.h"
 
@@ -88,36 +89,22 @@ ListedCommand commandFromStep(const JsonValue& step, const Values& values)
 	return command;
 }
 
-// Steps that a level names, or all.
-bool hasStep(const JsonValue& level, const std::string& name)
+// The steps that a level names, or all.
+std::vector<std::string> stepsOf(const JsonValue& level, const std::vector<std::string>& all)
 {
 	if (!level.has("steps"))
 	{
-		return true;
+		return all;
 	}
 	const std::vector<std::string> names = level.texts("steps");
-	return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-void checkSteps(const JsonValue& level, const JsonValue& steps)
-{
-	if (!level.has("steps"))
+	for (std::size_t i = 0; i < names.size(); ++i)
 	{
-		return;
-	}
-	const JsonValue names = level.at("steps");
-	for (std::size_t i = 0; i < names.arraySize(); ++i)
-	{
-		bool known = false;
-		for (std::size_t s = 0; s < steps.arraySize(); ++s)
+		if (std::find(all.begin(), all.end(), names[i]) == all.end())
 		{
-			known = known || steps.at(s).at("name").string() == names.at(i).string();
-		}
-		if (!known)
-		{
-			names.at(i).fail("'" + names.at(i).string() + "'", "the name of a step");
+			level.at("steps").at(i).fail("'" + names[i] + "'", "the name of a step");
 		}
 	}
+	return names;
 }
 
 void addThere(std::vector<std::string>& files, const std::string& of, const std::string& name)
@@ -213,21 +200,23 @@ std::vector<ListedCommand> readLevelList(const std::string& text, const std::str
 	}
 	const JsonValue steps = root.at("steps");
 	const JsonValue levels = root.at("levels");
+	const std::vector<std::string> all =
+		listOf(steps.arraySize(), [&steps](std::size_t s) { return steps.at(s).at("name").string(); });
 	std::vector<ListedCommand> commands;
 	for (std::size_t l = 0; l < levels.arraySize(); ++l)
 	{
 		const JsonValue level = levels.at(l);
 		level.allowOnly({"name", "level", "values", "steps"});
-		checkSteps(level, steps);
+		const std::vector<std::string> chosen = stepsOf(level, all);
 		Values values;
 		addValues(values, root);
 		addValues(values, level);
 		values["name"] = level.at("name").string();
 		values["level"] = inFolder(here, level.at("level").string());
 		values["here"] = here;
-		for (std::size_t s = 0; s < steps.arraySize(); ++s)
+		for (std::size_t s = 0; s < all.size(); ++s)
 		{
-			if (hasStep(level, steps.at(s).at("name").string()))
+			if (std::find(chosen.begin(), chosen.end(), all[s]) != chosen.end())
 			{
 				commands.push_back(commandFromStep(steps.at(s), values));
 			}

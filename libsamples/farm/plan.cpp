@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/json_reader.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "core/text.h"
 #include "farm/scripts.h"
@@ -139,11 +140,7 @@ private:
 	void add(std::size_t index)
 	{
 		const PlanCommand& command = m_commands[index];
-		std::vector<std::size_t> after;
-		for (const std::size_t other : m_before[index])
-		{
-			after.push_back(m_group[other]);
-		}
+		std::vector<std::size_t> after = mapped(m_before[index], [this](std::size_t other) { return m_group[other]; });
 		std::sort(after.begin(), after.end());
 		std::vector<std::string> words = command.words;
 		if (!command.identity.empty())
@@ -199,23 +196,17 @@ std::string quotedWord(const std::string& word)
 
 std::string quotedWords(const std::vector<std::string>& words)
 {
-	std::string text;
-	for (const std::string& word : words)
-	{
-		text += " " + quotedWord(word);
-	}
-	return text;
+	return joinedText(words, "", [](const std::string& word) { return " " + quotedWord(word); });
 }
 
 // One line per job, the arguments of run() in job.sh.
 std::string jobsText(const Plan& plan)
 {
-	std::string text;
-	for (const PlanJob& job : plan.jobs)
+	const auto lineOf = [](const PlanJob& job)
 	{
-		text += job.name + quotedWords(job.outputs) + " --" + quotedWords(job.inputs) + " --" + quotedWords(job.words) + "\n";
-	}
-	return text;
+		return job.name + quotedWords(job.outputs) + " --" + quotedWords(job.inputs) + " --" + quotedWords(job.words) + "\n";
+	};
+	return joinedText(plan.jobs, "", lineOf);
 }
 
 // One line per group, a call of group() in submit.sh.
@@ -324,11 +315,8 @@ double sharedSeconds(const JobNeeds& needs, std::size_t jobs)
 
 Plan planOf(std::vector<PlanCommand> commands, const Plan& plan, const std::string& folder)
 {
-	std::size_t jobs = 0;
-	for (const PlanCommand& command : commands)
-	{
-		jobs += static_cast<std::size_t>(command.shares) + 1;
-	}
+	const std::size_t jobs =
+		sumOver(commands, [](const PlanCommand& command) { return static_cast<std::size_t>(command.shares) + 1; });
 	if (jobs > kMaxJobs)
 	{
 		refusePlan("jobs: found about " + std::to_string(jobs) + ", expected at most " + std::to_string(kMaxJobs) + " in a plan");

@@ -2,6 +2,7 @@
 #include "format/arrays.h"
 
 #include "core/error.h"
+#include "core/lists.h"
 #include "core/text.h"
 
 #include <algorithm>
@@ -76,14 +77,12 @@ const char* columnsOf(Domain domain)
 
 std::vector<Sample> transformsOf(const PatternTile& tile)
 {
-	std::vector<Sample> transforms;
-	for (const TileTransform& t : tile.transforms)
+	const auto sampleOf = [&tile](const TileTransform& t)
 	{
-		transforms.push_back(tile.domain == Domain::ball
-								 ? Sample{toFloat(t.axis.x), toFloat(t.axis.y), toFloat(t.axis.z), toFloat(t.scale)}
-								 : Sample{toFloat(t.cos), toFloat(t.sin), toFloat(t.scale), toFloat(t.handedness)});
-	}
-	return transforms;
+		return tile.domain == Domain::ball ? Sample{toFloat(t.axis.x), toFloat(t.axis.y), toFloat(t.axis.z), toFloat(t.scale)}
+										   : Sample{toFloat(t.cos), toFloat(t.sin), toFloat(t.scale), toFloat(t.handedness)};
+	};
+	return mapped(tile.transforms, sampleOf);
 }
 
 const char* transformColumnsOf(Domain domain)

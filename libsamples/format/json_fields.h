@@ -3,9 +3,9 @@
 #pragma once
 
 #include "core/json_reader.h"
+#include "core/lists.h"
 #include "format/notes.h"
 
-#include <cmath>
 #include <limits>
 #include <string>
 
@@ -32,12 +32,7 @@ template <class Enum> Enum enumOf(const JsonValue& value)
 	const std::optional<Enum> found = valueNamed<Enum>(value.string());
 	if (!found.has_value())
 	{
-		std::string names;
-		for (const std::string_view name : namesOf<Enum>())
-		{
-			names += (names.empty() ? "" : ", ") + std::string(name);
-		}
-		value.expected("one of " + names);
+		value.expected("one of " + joinedText(namesOf<Enum>(), ", "));
 	}
 	return *found;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "format/notes.h"
 
-#include "core/text.h"
+#include "core/lists.h"
 
 #include <array>
 #include <cmath>
@@ -70,13 +70,11 @@ std::string withoutContinuation(std::string line)
 
 std::string measureText(const std::vector<Measure>& measures)
 {
-	std::string text;
-	for (const Measure& measure : measures)
+	const auto textOf = [](const Measure& measure)
 	{
-		text += (text.empty() ? "" : ", ") + measure.name + " " +
-				(std::isfinite(measure.value) ? roundedText(measure.value, 6) : "infinite");
-	}
-	return text;
+		return measure.name + " " + (std::isfinite(measure.value) ? roundedText(measure.value, 6) : "infinite");
+	};
+	return joinedText(measures, ", ", textOf);
 }
 
 } // namespace

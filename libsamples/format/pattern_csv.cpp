@@ -3,6 +3,7 @@
 
 #include "core/decimal.h"
 #include "core/error.h"
+#include "core/lists.h"
 #include "core/text.h"
 #include "format/arrays.h"
 #include "format/source_text.h"
@@ -206,13 +207,9 @@ Domain domainOf(const Sheet& sheet, std::optional<Domain> asked, const std::vect
 	if (!columnOf(header, "x").has_value() || !columnOf(header, "y").has_value() || has_z == disk ||
 		(columnOf(header, "half_length").has_value() && !disk))
 	{
-		std::string names;
-		for (const std::string& name : header)
-		{
-			names += (names.empty() ? "" : ",") + name;
-		}
-		throw Error(ExitCode::invalid_input, sheet.path + ": columns: found " + names + ", expected " + (disk ? "x,y" : "x,y,z") +
-												 " and perhaps weight for the domain " + std::string(nameOf(domain)));
+		throw Error(ExitCode::invalid_input, sheet.path + ": columns: found " + joinedText(header, ",") + ", expected " +
+												 (disk ? "x,y" : "x,y,z") + " and perhaps weight for the domain " +
+												 std::string(nameOf(domain)));
 	}
 	return domain;
 }

@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/json_reader.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "core/text.h"
 #include "format/arrays.h"
@@ -28,14 +29,9 @@ constexpr std::array<std::string_view, 9> kFormats{".json", ".h", ".glsl", ".hls
 
 [[noreturn]] void refuseFormat(const std::string& path, std::span<const std::string_view> formats)
 {
-	std::string names;
-	for (const std::string_view name : formats)
-	{
-		names += (names.empty() ? "" : ", ") + std::string(name);
-	}
 	const std::string ending = nativePath(path).extension().string();
-	throw Error(ExitCode::usage,
-				path + ": found " + (ending.empty() ? "no ending" : "the ending " + ending) + ", expected one of " + names);
+	throw Error(ExitCode::usage, path + ": found " + (ending.empty() ? "no ending" : "the ending " + ending) +
+									 ", expected one of " + joinedText(formats, ", "));
 }
 
 std::string sourceBytes(std::string_view format, const Source& source, std::span<const std::string_view> formats)
@@ -143,61 +139,22 @@ std::string_view formatOf(const std::string& path, std::span<const std::string_v
 std::string patternBytes(std::string_view format, const Pattern& pattern, const Recipe* recipe, const Quality& quality,
 						 const EmitContext& context)
 {
-	if (format == ".json")
-	{
-		return patternJson(pattern, recipe, quality, context);
-	}
-	if (format == ".csv")
-	{
-		return patternCsv(pattern, quality, context);
-	}
-	if (format == ".svg")
-	{
-		return svgText(patternPicture(pattern, recipe, quality), notesOf(context, measuresOf(quality)));
-	}
-	return sourceBytes(format, sourceOf(pattern, recipe, quality, context), patternFormats());
+	return format == ".json"  ? patternJson(pattern, recipe, quality, context)
+		   : format == ".csv" ? patternCsv(pattern, quality, context)
+		   : format == ".svg" ? svgText(patternPicture(pattern, recipe, quality), notesOf(context, measuresOf(quality)))
+							  : sourceBytes(format, sourceOf(pattern, recipe, quality, context), patternFormats());
 }
 
 std::string tileBytes(std::string_view format, const PatternTile& tile, const TileRecipe* recipe, const TileQuality& quality,
 					  const EmitContext& context)
 {
-	if (format == ".json")
-	{
-		return tileJson(tile, recipe, quality, context);
-	}
-	if (format == ".csv")
-	{
-		return tileCsv(tile, quality, context);
-	}
-	if (format == ".svg")
-	{
-		return svgText(tilePicture(tile, quality), notesOf(context, measuresOf(quality)));
-	}
-	if (format == ".png")
-	{
-		return tilePng(tile, quality, context);
-	}
-	if (format == ".exr")
-	{
-		return tileExr(tile, quality, context);
-	}
-	if (format == ".ktx2")
-	{
-		return tileKtx2(tile, quality, context);
-	}
-	return sourceBytes(format, sourceOf(tile, quality, context), tileFormats());
-}
-
-void emitPattern(const std::string& path, const Pattern& pattern, const Recipe* recipe, const Quality& quality,
-				 const EmitContext& context)
-{
-	writeFile(path, patternBytes(formatOf(path, patternFormats()), pattern, recipe, quality, context));
-}
-
-void emitTile(const std::string& path, const PatternTile& tile, const TileRecipe* recipe, const TileQuality& quality,
-			  const EmitContext& context)
-{
-	writeFile(path, tileBytes(formatOf(path, tileFormats()), tile, recipe, quality, context));
+	return format == ".json"   ? tileJson(tile, recipe, quality, context)
+		   : format == ".csv"  ? tileCsv(tile, quality, context)
+		   : format == ".svg"  ? svgText(tilePicture(tile, quality), notesOf(context, measuresOf(quality)))
+		   : format == ".png"  ? tilePng(tile, quality, context)
+		   : format == ".exr"  ? tileExr(tile, quality, context)
+		   : format == ".ktx2" ? tileKtx2(tile, quality, context)
+							   : sourceBytes(format, sourceOf(tile, quality, context), tileFormats());
 }
 
 std::string headerText(const Source& source)

@@ -28,10 +28,4 @@ std::string patternBytes(std::string_view format, const Pattern& pattern, const 
 std::string tileBytes(std::string_view format, const PatternTile& tile, const TileRecipe* recipe, const TileQuality& quality,
 					  const EmitContext& context);
 
-// Writes the file, complete or not at all. Throws Error (usage, file).
-void emitPattern(const std::string& path, const Pattern& pattern, const Recipe* recipe, const Quality& quality,
-				 const EmitContext& context);
-void emitTile(const std::string& path, const PatternTile& tile, const TileRecipe* recipe, const TileQuality& quality,
-			  const EmitContext& context);
-
 } // namespace nook

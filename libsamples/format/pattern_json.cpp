@@ -263,17 +263,6 @@ std::string jsonHead(const char* schema, const EmitContext& context)
 		   ",\n\t\"version\": " + jsonText(context.version) + ",\n\t\"SPDX-License-Identifier\": \"MIT\",\n";
 }
 
-std::string measuresJson(const std::vector<Measure>& measures)
-{
-	std::string text = "{";
-	for (const Measure& measure : measures)
-	{
-		text += (text.size() == 1 ? "\n\t\t" : ",\n\t\t") + jsonText(measure.name) + ": " +
-				(std::isfinite(measure.value) ? doubleText(measure.value) : "null");
-	}
-	return text + "\n\t}";
-}
-
 std::string samplesJson(const Pattern& pattern, const std::string& indent)
 {
 	std::string text = indent + "\"points\": [";

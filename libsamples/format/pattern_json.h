@@ -51,8 +51,6 @@ glm::dvec3 checkedPoint(Domain domain, const glm::dvec3& point, const std::strin
 // `where` names the list and `name_of` an entry, both starting with the path.
 void checkWeights(std::vector<double>& weights, const std::string& where, const SampleName& name_of);
 
-// Patterns as comma-separated values, one sample per row.
-
 // Comments (#), the header x,y,half_length,weight (disk) or x,y,z,weight, then the rows; all 32-bit floats.
 std::string patternCsv(const Pattern& pattern, const Quality& quality, const EmitContext& context);
 

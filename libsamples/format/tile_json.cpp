@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "core/text.h"
 #include "format/arrays.h"
@@ -13,7 +14,6 @@
 
 #include <array>
 #include <cmath>
-#include <filesystem>
 
 namespace nook
 {
@@ -109,18 +109,11 @@ TileTransform transformOf(const std::array<double, 4>& n, Domain domain)
 
 std::string transformsJson(const PatternTile& tile)
 {
-	std::string text;
-	for (const TileTransform& transform : tile.transforms)
+	const auto textOf = [&tile](const TileTransform& transform)
 	{
-		text += text.empty() ? "\n\t\t[" : ",\n\t\t[";
-		const std::array<double, 4> numbers = numbersOf(transform, tile.domain);
-		for (std::size_t i = 0; i < numbers.size(); ++i)
-		{
-			text += (i == 0 ? "" : ", ") + doubleText(numbers[i]);
-		}
-		text += "]";
-	}
-	return "[" + text + "\n\t]";
+		return "\n\t\t[" + joinedText(numbersOf(transform, tile.domain), ", ", doubleText) + "]";
+	};
+	return "[" + joinedText(tile.transforms, ",", textOf) + "\n\t]";
 }
 
 TileTransform readTransform(const JsonValue& value, Domain domain)
@@ -149,11 +142,11 @@ TileTransform readTransform(const JsonValue& value, Domain domain)
 // Empty for a tile that is the same in every frame.
 std::string framesJson(const PatternTile& tile)
 {
-	std::string moves;
-	for (const glm::ivec2& move : tile.moves)
+	const auto textOf = [](const glm::ivec2& move)
 	{
-		moves += (moves.empty() ? "[" : ", [") + std::to_string(move.x) + ", " + std::to_string(move.y) + "]";
-	}
+		return "[" + std::to_string(move.x) + ", " + std::to_string(move.y) + "]";
+	};
+	const std::string moves = joinedText(tile.moves, ", ", textOf);
 	return (tile.frames > 1 ? "\t\"frames\": " + std::to_string(tile.frames) + ",\n" : "") +
 		   (moves.empty() ? "" : "\t\"moves\": [" + moves + "],\n");
 }
@@ -373,11 +366,7 @@ TileFilter readFilterFields(const JsonValue& object)
 	{
 		taps.expected("rows of " + std::to_string(width) + " numbers, at most " + std::to_string(kMaxTaps));
 	}
-	std::vector<double> numbers;
-	for (std::size_t i = 0; i < count; ++i)
-	{
-		numbers.push_back(taps.at(i).number());
-	}
+	std::vector<double> numbers = listOf(count, [&taps](std::size_t i) { return taps.at(i).number(); });
 	checkedSum(taps, numbers);
 	TileFilter filter{object.at("name").string(), object.at("share").number(), static_cast<int>(width), std::move(numbers)};
 	if (!(filter.share > 0.0 && filter.share <= 1e6))

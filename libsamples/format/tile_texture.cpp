@@ -2,6 +2,7 @@
 #include "format/tile_texture.h"
 
 #include "core/image.h"
+#include "core/lists.h"
 #include "core/round.h"
 #include "core/text.h"
 #include "format/arrays.h"
@@ -43,116 +44,8 @@ Notes textureNotes(const TileTexture& texture, const TileQuality& quality, const
 	return notes;
 }
 
-} // namespace
-
-TileTexture textureOf(const PatternTile& tile, bool layered)
-{
-	TileTexture texture;
-	const std::string size = std::to_string(tile.size);
-	const auto allocate = [&](int width_px, int height_px)
-	{
-		texture.width_px = width_px;
-		texture.height_px = height_px;
-		texture.layer_height_px = height_px;
-		texture.rgba.resize(4 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px));
-	};
-	if (!tile.transforms.empty())
-	{
-		allocate(tile.size, tile.size);
-		const std::vector<Sample> transforms = transformsOf(tile);
-		for (int i = 0; i < tile.size * tile.size; ++i)
-		{
-			setTexel(texture, i % tile.size, i / tile.size, transforms[static_cast<std::size_t>(i)]);
-		}
-		setRange(texture, tile.domain == Domain::ball ? 3 : 2);
-		texture.layout = "texel = (x mod " + size + ", y mod " + size + "); RGBA = " + transformColumnsOf(tile.domain);
-		return texture;
-	}
-	const int count = static_cast<int>(tile.variants.front().count());
-	const int variants = static_cast<int>(tile.variants.size());
-	const int layers = layered ? layersOf(tile) : 1;
-	allocate(variants / layers, count * layers);
-	texture.layer_height_px = count;
-	for (int v = 0; v < variants; ++v)
-	{
-		const std::vector<Sample> samples = samplesOf(tile.variants[static_cast<std::size_t>(v)]);
-		for (int i = 0; i < count; ++i)
-		{
-			setTexel(texture, v % texture.width_px, v / texture.width_px * count + i, samples[static_cast<std::size_t>(i)]);
-		}
-	}
-	setRange(texture, 3);
-	PatternTile one_layer; // to describe
-	one_layer.frames = layers > 1 ? 1 : tile.frames;
-	one_layer.moves = tile.moves;
-	std::string variant = variantText(one_layer, size);
-	for (std::size_t at = variant.find(" % "); at != std::string::npos; at = variant.find(" % "))
-	{
-		variant.replace(at, 3, " mod ");
-	}
-	texture.layout = "column = variant = " + variant + (layers > 1 ? ", layer = frame mod " + std::to_string(layers) : "") +
-					 ", row = sample; RGBA = " + columnsOf(tile.domain);
-	for (std::size_t f = 0; f < tile.moves.size(); ++f)
-	{
-		texture.layout += (f == 0 ? "; moves " : " ") + std::to_string(tile.moves[f].x) + "," + std::to_string(tile.moves[f].y);
-	}
-	return texture;
-}
-
-std::string tileExr(const PatternTile& tile, const TileQuality& quality, const EmitContext& context)
-{
-	const TileTexture texture = textureOf(tile);
-	return exrBytes(texture.width_px, texture.height_px, texture.rgba, textureNotes(texture, quality, context));
-}
-
-std::string tilePng(const PatternTile& tile, const TileQuality& quality, const EmitContext& context)
-{
-	const TileTexture texture = textureOf(tile);
-	std::vector<uint16_t> numbers(texture.rgba.size());
-	for (std::size_t i = 0; i < numbers.size(); ++i)
-	{
-		const double share = double{texture.rgba[i]} / double{texture.range[i % 4]};
-		numbers[i] = static_cast<uint16_t>(32768.0 + std::floor(32767.0 * std::clamp(share, -1.0, 1.0) + 0.5));
-	}
-	Notes notes = textureNotes(texture, quality, context);
-	std::string ranges;
-	for (const float range : texture.range)
-	{
-		ranges += (ranges.empty() ? "" : ", ") + floatText(range);
-	}
-	notes.push_back({"Encoding", "value = (v - 32768) / 32767 * range, v = 0 to 65535; range of RGBA = " + ranges});
-	return pngBytes(texture.width_px, texture.height_px, numbers, notes);
-}
-
-std::string tileKtx2(const PatternTile& tile, const TileQuality& quality, const EmitContext& context)
-{
-	const TileTexture texture = textureOf(tile, true);
-	const int layers = texture.height_px / texture.layer_height_px;
-	Ktx2Texture made;
-	made.width = static_cast<uint32_t>(texture.width_px);
-	made.height = static_cast<uint32_t>(texture.layer_height_px);
-	made.layers = static_cast<uint32_t>(layers > 1 ? layers : 0);
-	made.notes = notesOf(context, measuresOf(quality));
-	made.notes.push_back({"Layout", texture.layout});
-	made.notes.push_back({"KTXorientation", "rd"}); // rows from the top
-	made.notes.push_back({"KTXwriter", "nook " + context.version});
-	made.bytes.reserve(4 * texture.rgba.size());
-	for (const float value : texture.rgba)
-	{
-		const auto bits = bitsAs<uint32_t>(value);
-		for (int i = 0; i < 4; ++i)
-		{
-			made.bytes += static_cast<char>((bits >> (8 * i)) & 0xFFU);
-		}
-	}
-	return ktx2Bytes(made);
-}
-
 // This work is based on: Khronos, "KTX File Format Specification", version 2.0, and "Khronos Data Format Specification", version
 // 1.3 (the basic descriptor block). All numbers are little-endian.
-
-namespace
-{
 
 constexpr std::string_view kIdentifier = "\xABKTX 20\xBB\r\n\x1A\n";
 constexpr uint64_t kIndexEnd = 80 + 24; // the header and the index of one level
@@ -230,6 +123,105 @@ std::string keysAndValues(Notes notes)
 }
 
 } // namespace
+
+TileTexture textureOf(const PatternTile& tile, bool layered)
+{
+	TileTexture texture;
+	const std::string size = std::to_string(tile.size);
+	const auto allocate = [&](int width_px, int height_px)
+	{
+		texture.width_px = width_px;
+		texture.height_px = height_px;
+		texture.layer_height_px = height_px;
+		texture.rgba.resize(4 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px));
+	};
+	if (!tile.transforms.empty())
+	{
+		allocate(tile.size, tile.size);
+		const std::vector<Sample> transforms = transformsOf(tile);
+		for (int i = 0; i < tile.size * tile.size; ++i)
+		{
+			setTexel(texture, i % tile.size, i / tile.size, transforms[static_cast<std::size_t>(i)]);
+		}
+		setRange(texture, tile.domain == Domain::ball ? 3 : 2);
+		texture.layout = "texel = (x mod " + size + ", y mod " + size + "); RGBA = " + transformColumnsOf(tile.domain);
+		return texture;
+	}
+	const int count = static_cast<int>(tile.variants.front().count());
+	const int variants = static_cast<int>(tile.variants.size());
+	const int layers = layered ? layersOf(tile) : 1;
+	allocate(variants / layers, count * layers);
+	texture.layer_height_px = count;
+	for (int v = 0; v < variants; ++v)
+	{
+		const std::vector<Sample> samples = samplesOf(tile.variants[static_cast<std::size_t>(v)]);
+		for (int i = 0; i < count; ++i)
+		{
+			setTexel(texture, v % texture.width_px, v / texture.width_px * count + i, samples[static_cast<std::size_t>(i)]);
+		}
+	}
+	setRange(texture, 3);
+	PatternTile one_layer; // to describe
+	one_layer.frames = layers > 1 ? 1 : tile.frames;
+	one_layer.moves = tile.moves;
+	std::string variant = variantText(one_layer, size);
+	for (std::size_t at = variant.find(" % "); at != std::string::npos; at = variant.find(" % "))
+	{
+		variant.replace(at, 3, " mod ");
+	}
+	texture.layout = "column = variant = " + variant + (layers > 1 ? ", layer = frame mod " + std::to_string(layers) : "") +
+					 ", row = sample; RGBA = " + columnsOf(tile.domain);
+	for (std::size_t f = 0; f < tile.moves.size(); ++f)
+	{
+		texture.layout += (f == 0 ? "; moves " : " ") + std::to_string(tile.moves[f].x) + "," + std::to_string(tile.moves[f].y);
+	}
+	return texture;
+}
+
+std::string tileExr(const PatternTile& tile, const TileQuality& quality, const EmitContext& context)
+{
+	const TileTexture texture = textureOf(tile);
+	return exrBytes(texture.width_px, texture.height_px, texture.rgba, textureNotes(texture, quality, context));
+}
+
+std::string tilePng(const PatternTile& tile, const TileQuality& quality, const EmitContext& context)
+{
+	const TileTexture texture = textureOf(tile);
+	std::vector<uint16_t> numbers(texture.rgba.size());
+	for (std::size_t i = 0; i < numbers.size(); ++i)
+	{
+		const double share = double{texture.rgba[i]} / double{texture.range[i % 4]};
+		numbers[i] = static_cast<uint16_t>(32768.0 + std::floor(32767.0 * std::clamp(share, -1.0, 1.0) + 0.5));
+	}
+	Notes notes = textureNotes(texture, quality, context);
+	const std::string ranges = joinedText(texture.range, ", ", [](float range) { return floatText(range); });
+	notes.push_back({"Encoding", "value = (v - 32768) / 32767 * range, v = 0 to 65535; range of RGBA = " + ranges});
+	return pngBytes(texture.width_px, texture.height_px, numbers, notes);
+}
+
+std::string tileKtx2(const PatternTile& tile, const TileQuality& quality, const EmitContext& context)
+{
+	const TileTexture texture = textureOf(tile, true);
+	const int layers = texture.height_px / texture.layer_height_px;
+	Ktx2Texture made;
+	made.width = static_cast<uint32_t>(texture.width_px);
+	made.height = static_cast<uint32_t>(texture.layer_height_px);
+	made.layers = static_cast<uint32_t>(layers > 1 ? layers : 0);
+	made.notes = notesOf(context, measuresOf(quality));
+	made.notes.push_back({"Layout", texture.layout});
+	made.notes.push_back({"KTXorientation", "rd"}); // rows from the top
+	made.notes.push_back({"KTXwriter", "nook " + context.version});
+	made.bytes.reserve(4 * texture.rgba.size());
+	for (const float value : texture.rgba)
+	{
+		const auto bits = bitsAs<uint32_t>(value);
+		for (int i = 0; i < 4; ++i)
+		{
+			made.bytes += static_cast<char>((bits >> (8 * i)) & 0xFFU);
+		}
+	}
+	return ktx2Bytes(made);
+}
 
 std::string ktx2Bytes(const Ktx2Texture& texture)
 {

@@ -2,6 +2,7 @@
 #include "methods/method_table.h"
 
 #include "core/decimal.h"
+#include "core/lists.h"
 
 #include <algorithm>
 #include <cassert>
@@ -215,12 +216,7 @@ std::string rangeText(const FeatureRow& feature)
 	{
 		return plainNumber(feature.least) + " to " + plainNumber(feature.most);
 	}
-	std::string text;
-	for (const std::string_view choice : feature.choices)
-	{
-		text += (text.empty() ? "" : ", ") + choiceText(choice);
-	}
-	return text;
+	return joinedText(feature.choices, ", ", choiceText);
 }
 
 std::string defaultText(const FeatureRow& feature)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Converts patterns to the samples that kernels read.
 #include "core/error.h"
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/random.h"
 #include "methods/aov_text.h"
@@ -25,12 +26,8 @@ constexpr double kTwin = 1e-5; // tolerance between a point and its mirrored par
 // log2 of the side of each point's part of the disk, in radii.
 std::vector<double> areaSides(const Pattern& pattern)
 {
-	std::vector<double> sides;
-	for (const double share : exactCells(Domain::hemisphere, pattern.points).integrals)
-	{
-		sides.push_back(0.5 * std::numbers::log2e * logOf(std::numbers::pi * std::max(share, 1e-9)));
-	}
-	return sides;
+	return mapped(exactCells(Domain::hemisphere, pattern.points).integrals,
+				  [](double share) { return 0.5 * std::numbers::log2e * logOf(std::numbers::pi * std::max(share, 1e-9)); });
 }
 
 std::size_t twinOf(const Pattern& pattern, std::size_t i)

@@ -2,6 +2,7 @@
 #include "pattern/cells.h"
 
 #include "core/convex_clip.h"
+#include "core/lists.h"
 #include "core/math.h"
 
 #include <glm/common.hpp>
@@ -51,16 +52,9 @@ void addCellGradient(Domain domain, std::span<const glm::dvec3> points, std::spa
 double relativeSpread(std::span<const double> integrals)
 {
 	const auto count = static_cast<double>(integrals.size());
-	double mean = 0.0;
-	for (const double integral : integrals)
-	{
-		mean += integral / count;
-	}
-	double variance = 0.0;
-	for (const double integral : integrals)
-	{
-		variance += (integral - mean) * (integral - mean) / count;
-	}
+	const double mean = sumOver(integrals, [count](double integral) { return integral / count; });
+	const double variance =
+		sumOver(integrals, [mean, count](double integral) { return (integral - mean) * (integral - mean) / count; });
 	return std::sqrt(variance) / mean;
 }
 

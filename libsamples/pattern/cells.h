@@ -9,7 +9,6 @@
 #include <glm/vec2.hpp>
 
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace nook
@@ -75,9 +74,7 @@ Cells spaceCells(std::span<const glm::dvec3> points, std::span<const double> pow
 Cells directionCells(std::span<const glm::dvec3> points, std::span<const double> powers);
 } // namespace detail
 
-// Outlines of cells, for drawing.
-
-using CellPolygon = std::vector<glm::dvec2>; // empty if the point has no cell
+using CellPolygon = std::vector<glm::dvec2>; // an outline, empty if the point has no cell
 
 // Cells of the disk and of the hemisphere's projection, one per point, clipped to the unit circle (as a polygon of 192 sides).
 std::vector<CellPolygon> planeCellPolygons(const Pattern& pattern);

@@ -2,6 +2,7 @@
 // Cells of directions on the unit sphere, density 1/4π: spherical Voronoi diagrams or, with powers, the spherical Laguerre diagram
 // (Sugihara, "Laguerre Voronoi diagram on the sphere", 2002), whose borders are also great circles.
 #include "core/convex_clip.h"
+#include "core/lists.h"
 #include "core/math.h"
 #include "pattern/cells.h"
 
@@ -113,12 +114,11 @@ void addCell(Cells& cells, int index, const glm::dvec3& direction, const std::ve
 	const auto i = static_cast<std::size_t>(index);
 	if (reachesAround(direction, polygon))
 	{
-		std::vector<glm::dvec3> normals;
-		for (const ArcCorner& corner : polygon)
+		const auto normalOf = [&](const ArcCorner& corner)
 		{
-			normals.push_back(glm::normalize(scaled[i] - scaled[static_cast<std::size_t>(corner.label)]));
-		}
-		area = turningArea(polygon, normals);
+			return glm::normalize(scaled[i] - scaled[static_cast<std::size_t>(corner.label)]);
+		};
+		area = turningArea(polygon, mapped(polygon, normalOf));
 	}
 	cells.integrals[i] = std::max(kSphereDensity * area, 0.0);
 	cells.centroids[i] = cells.integrals[i] > kLeastCell ? moment / area : direction;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Neighbouring cells from CGAL's triangulations with exact predicates.
+#include "core/lists.h"
 #include "pattern/cells.h"
 
 #include <CGAL/Delaunay_triangulation_2.h>
@@ -55,13 +56,7 @@ Kernel::Point_3 point3(const glm::dvec3& p)
 // Inserts all points at once (CGAL orders them along a space-filling curve) and reads the edges.
 template <class Triangulation, class MakePoint> Neighbours neighboursOf(std::size_t count, const MakePoint& make_point)
 {
-	using Point = decltype(make_point(std::size_t{0}));
-	std::vector<std::pair<Point, int>> input;
-	input.reserve(count);
-	for (std::size_t i = 0; i < count; ++i)
-	{
-		input.emplace_back(make_point(i), static_cast<int>(i));
-	}
+	const auto input = listOf(count, [&](std::size_t i) { return std::pair(make_point(i), static_cast<int>(i)); });
 	Triangulation triangulation;
 	triangulation.insert(input.begin(), input.end());
 

@@ -9,8 +9,6 @@
 #include "core/math.h"
 #include "pattern/cells.h"
 
-#include <glm/geometric.hpp>
-
 namespace nook::detail
 {
 namespace

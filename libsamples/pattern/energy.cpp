@@ -17,6 +17,7 @@
 // each axis.
 #include "pattern/energy.h"
 
+#include "core/lists.h"
 #include "core/parallel.h"
 #include "pattern/energy_rows.h"
 
@@ -237,6 +238,19 @@ std::vector<double> pairTerms(Domain domain, std::span<const glm::dvec3> first, 
 
 using namespace energy;
 
+std::vector<std::size_t> TileShares::offsets(std::size_t end) const
+{
+	std::vector<std::size_t> weighted;
+	for (std::size_t offset = 1; offset < end; ++offset)
+	{
+		if (pairs[offset] != 0.0)
+		{
+			weighted.push_back(offset);
+		}
+	}
+	return weighted;
+}
+
 double tileSquaredError(Domain domain, const TileShares& shares, std::span<const glm::dvec3> points,
 						std::span<const double> weights, EnergyGradient* gradient, int threads, ProgressCounter* progress)
 {
@@ -245,14 +259,7 @@ double tileSquaredError(Domain domain, const TileShares& shares, std::span<const
 	const Setup setup = makeSetup(domain, Ensemble::plane);
 	const std::vector<Sample> samples = makeSamples(setup, points, weights);
 	const std::size_t tasks = tileTasks(samples.size());
-	std::vector<std::size_t> offsets; // offsets with non-zero weight
-	for (std::size_t offset = 1; offset < groups; ++offset)
-	{
-		if (shares.pairs[offset] != 0.0)
-		{
-			offsets.push_back(offset);
-		}
-	}
+	const std::vector<std::size_t> offsets = shares.offsets(groups);
 	std::vector<std::vector<RowTerms>> parts(tasks, std::vector<RowTerms>(samples.size()));
 	parallelFor(tasks, threads,
 				[&](std::size_t task)
@@ -266,11 +273,7 @@ double tileSquaredError(Domain domain, const TileShares& shares, std::span<const
 						}
 					}
 				});
-	double total = 0.0;
-	for (const double share : shares.pairs)
-	{
-		total += share;
-	}
+	double total = sumOver(shares.pairs);
 	if (gradient != nullptr)
 	{
 		gradient->points.resize(samples.size());

@@ -47,6 +47,9 @@ struct TileShares
 	int size = 0;
 	int frames = 1;
 	std::vector<double> pairs; // their sum is the total weight of the means they describe
+
+	// Those from 1 to end - 1 that have a weight.
+	std::vector<std::size_t> offsets(std::size_t end) const;
 };
 
 // For frames · size² groups of equally many consecutive samples, whose weights sum to 1: the sum of the squared errors of all

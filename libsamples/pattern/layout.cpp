@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pattern/layout.h"
 
+#include "core/lists.h"
+
 #include <glm/geometric.hpp>
 
 #include <cmath>
@@ -65,12 +67,7 @@ std::vector<glm::dvec3> Layout::expand(std::span<const glm::dvec3> free) const
 
 std::vector<glm::dvec3> Layout::freePoints(std::span<const glm::dvec3> all) const
 {
-	std::vector<glm::dvec3> free;
-	for (std::size_t k = 0; k < m_free; ++k)
-	{
-		free.push_back(all[firstFree(k)]);
-	}
-	return free;
+	return listOf(m_free, [&](std::size_t k) { return all[firstFree(k)]; });
 }
 
 std::vector<double> Layout::variables(std::span<const glm::dvec3> all) const

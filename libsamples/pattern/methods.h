@@ -14,8 +14,6 @@
 namespace nook
 {
 
-// Progress of one start within a stage of several.
-
 // Each step of a descent counts as one item; its end counts the remaining ones, since most descents stop early.
 class StartProgress
 {

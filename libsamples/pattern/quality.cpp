@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pattern/quality.h"
 
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/random.h"
@@ -195,11 +196,8 @@ double measureCrease(const Estimator& estimator)
 // The greatest error over the caps around one direction, evaluated just below and at every point's height.
 double greatestCap(const Pattern& pattern, const glm::dvec3& n)
 {
-	std::vector<std::pair<double, double>> heights;
-	for (std::size_t i = 0; i < pattern.count(); ++i)
-	{
-		heights.emplace_back(glm::dot(n, pattern.points[i]), pattern.weights[i]);
-	}
+	std::vector<std::pair<double, double>> heights =
+		listOf(pattern.count(), [&](std::size_t i) { return std::pair(glm::dot(n, pattern.points[i]), pattern.weights[i]); });
 	std::sort(heights.begin(), heights.end());
 	double below = 0.0;
 	double greatest = 0.0;

@@ -5,7 +5,6 @@
 #include "core/error.h"
 
 #include <array>
-#include <charconv>
 
 namespace nook
 {

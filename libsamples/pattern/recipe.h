@@ -116,8 +116,6 @@ template <> std::span<const std::string_view> namesOf<WeightRule>();
 template <> std::span<const std::string_view> namesOf<VoronoiMode>();
 template <> std::span<const std::string_view> namesOf<Order>();
 
-// Recipe → pattern.
-
 // Called with a start's number and its current points while they move; several starts run in parallel if there are several threads.
 // Never changes the result. May be empty.
 using Watch = std::function<void(std::size_t start, std::span<const glm::dvec3> points)>;

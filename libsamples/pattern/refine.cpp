@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gradient descent on the measure itself from many starts. The weights are functions of the points (cell integrals or the best
 // fit), and the gradient includes their derivatives.
+#include "core/lists.h"
 #include "core/parallel.h"
 #include "pattern/lbfgs.h"
 #include "pattern/methods.h"
@@ -255,12 +256,8 @@ double descend(const Recipe& recipe, const Layout& layout, Points& points, Minim
 
 double measureValue(Domain domain, Minimise minimise_what, std::span<const glm::dvec3> points, std::span<const double> weights)
 {
-	double value = 0.0;
-	for (const Term& term : termsOf(domain, minimise_what))
-	{
-		value += term.factor * squaredError(domain, term.ensemble, term.part, points, weights);
-	}
-	return value;
+	return sumOver(termsOf(domain, minimise_what),
+				   [&](const Term& term) { return term.factor * squaredError(domain, term.ensemble, term.part, points, weights); });
 }
 
 Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)

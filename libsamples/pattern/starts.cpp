@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pattern/methods.h"
 
+#include "core/lists.h"
 #include "core/math.h"
-#include "core/parallel.h"
 #include "core/random.h"
 #include "core/round.h"
 #include "pattern/recipe.h"
@@ -79,12 +79,7 @@ Points makePoints(const Recipe& recipe, const Layout& layout, const RunSettings&
 
 std::vector<glm::dvec3> randomPoints(const Layout& layout, Random& random)
 {
-	std::vector<glm::dvec3> free;
-	for (std::size_t k = 0; k < layout.freeCount(); ++k)
-	{
-		free.push_back(randomPoint(layout, random));
-	}
-	return layout.expand(free);
+	return layout.expand(listOf(layout.freeCount(), [&](std::size_t) { return randomPoint(layout, random); }));
 }
 
 std::vector<glm::dvec3> poissonPoints(const Layout& layout, Random& random)

@@ -6,13 +6,13 @@
 
 #include "core/decimal.h"
 #include "core/error.h"
+#include "core/lists.h"
 #include "core/round.h"
 #include "core/text.h"
 #include "pattern/tile_parts.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <limits>
 #include <optional>
 
@@ -34,6 +34,37 @@ constexpr double kFramesLambda = 1.0;     // with less, single variants exceed 1
 constexpr double kTransformLambda = 0.15; // with less, the scales spread so far that single variants suffer
 constexpr double kPrefix = 0.3;           // weight of the means of 2, 4, 8, … frames relative to that of all
 constexpr int kPannedSize = 8; // panning brings distant pixels together; in a large tile that involves every pair of variants
+
+std::string tileCommandOn(const TileRecipe& recipe, const std::string& base)
+{
+	const TileRecipe plain;
+	std::string command = "nook tile " + base + " --size " + std::to_string(recipe.size);
+	if (recipe.kind != plain.kind)
+	{
+		command += " --kind " + std::string(nameOf(recipe.kind));
+	}
+	if (recipe.lambda != plain.lambda)
+	{
+		command += " --lambda " + numberText(recipe.lambda);
+	}
+	for (const TileFilter& filter : recipe.filters)
+	{
+		command += " --filter " + filter.name + (filter.share != 1.0 ? "@" + numberText(filter.share) : "");
+	}
+	command += recipe.robust ? " --robust" : "";
+	command += recipe.frames > 1 ? " --frames " + std::to_string(recipe.frames) + " --ema " + numberText(recipe.ema) : "";
+	command += recipe.moves ? " --moves" : "";
+	command += recipe.progressive ? " --progressive" : "";
+	if (recipe.starts != plain.starts)
+	{
+		command += " --starts " + std::to_string(recipe.starts);
+	}
+	if (recipe.seed != plain.seed)
+	{
+		command += " --seed " + std::to_string(recipe.seed);
+	}
+	return command;
+}
 
 } // namespace
 
@@ -98,11 +129,7 @@ TileShares seenShares(const TileRecipe& recipe)
 	{
 		addShares(all, shares, scale / shares.pairs[0]);
 	};
-	double sum = 0.0;
-	for (const TileFilter& filter : recipe.filters)
-	{
-		sum += filter.share;
-	}
+	const double sum = sumOver(recipe.filters, [](const TileFilter& filter) { return filter.share; });
 	for (const TileFilter& filter : recipe.filters)
 	{
 		const double share = filter.share / sum;
@@ -273,42 +300,6 @@ void checkTileRecipe(const TileRecipe& recipe, Domain domain)
 						": rotations about the view axis are for disk and hemisphere; expected points or random");
 	}
 }
-
-namespace
-{
-
-std::string tileCommandOn(const TileRecipe& recipe, const std::string& base)
-{
-	const TileRecipe plain;
-	std::string command = "nook tile " + base + " --size " + std::to_string(recipe.size);
-	if (recipe.kind != plain.kind)
-	{
-		command += " --kind " + std::string(nameOf(recipe.kind));
-	}
-	if (recipe.lambda != plain.lambda)
-	{
-		command += " --lambda " + numberText(recipe.lambda);
-	}
-	for (const TileFilter& filter : recipe.filters)
-	{
-		command += " --filter " + filter.name + (filter.share != 1.0 ? "@" + numberText(filter.share) : "");
-	}
-	command += recipe.robust ? " --robust" : "";
-	command += recipe.frames > 1 ? " --frames " + std::to_string(recipe.frames) + " --ema " + numberText(recipe.ema) : "";
-	command += recipe.moves ? " --moves" : "";
-	command += recipe.progressive ? " --progressive" : "";
-	if (recipe.starts != plain.starts)
-	{
-		command += " --starts " + std::to_string(recipe.starts);
-	}
-	if (recipe.seed != plain.seed)
-	{
-		command += " --seed " + std::to_string(recipe.seed);
-	}
-	return command;
-}
-
-} // namespace
 
 std::string tileCommand(const TileRecipe& recipe, const std::string& pattern_file)
 {

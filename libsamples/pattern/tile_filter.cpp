@@ -3,6 +3,7 @@
 
 #include "core/decimal.h"
 #include "core/error.h"
+#include "core/lists.h"
 #include "core/math.h"
 
 #include <algorithm>
@@ -108,11 +109,7 @@ std::vector<double> weightsInTime(double ema, int frames, int period)
 
 TileFilter tileFilterOf(std::string name, int width, std::vector<double> taps)
 {
-	double sum = 0.0;
-	for (const double tap : taps)
-	{
-		sum += tap;
-	}
+	const double sum = sumOver(taps);
 	for (double& tap : taps)
 	{
 		tap /= sum;

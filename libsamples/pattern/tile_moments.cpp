@@ -7,6 +7,7 @@
 // stays exact.
 #include "pattern/tile_parts.h"
 
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "pattern/methods.h"
@@ -330,11 +331,8 @@ void TileMoments::makeOffsets(const TileShares& shares)
 	}
 	// Cosines and sines of the cycle: weights that are even in time act on each by a factor.
 	const auto frames = static_cast<double>(m_frames);
-	std::vector<double> cosines;
-	for (std::size_t f = 0; f < m_frames; ++f)
-	{
-		cosines.push_back(sinCosOf(2.0 * kPi * static_cast<double>(f) / frames).cos);
-	}
+	const std::vector<double> cosines =
+		listOf(m_frames, [frames](std::size_t f) { return sinCosOf(2.0 * kPi * static_cast<double>(f) / frames).cos; });
 	const auto frequencyOf = [](std::size_t wave)
 	{
 		return (wave + 1) / 2;
@@ -487,12 +485,7 @@ double TileMoments::pullBack(std::span<const glm::dvec3> points, std::span<const
 					  of_variant(v, own);
 				  }
 			  });
-	double sum = 0.0;
-	for (const double value : values)
-	{
-		sum += value;
-	}
-	return scale * sum;
+	return scale * sumOver(values);
 }
 
 double TileMoments::operator()(std::span<const glm::dvec3> points, std::span<const double> weights, EnergyGradient& gradient,

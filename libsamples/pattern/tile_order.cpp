@@ -171,55 +171,7 @@ std::vector<Unit> unitsOf(const Recipe& structure, std::size_t count)
 	return units;
 }
 
-} // namespace
-
-void orderProgressively(const Pattern& base, const TileRecipe& recipe, std::vector<Pattern>& variants, const RunSettings& run)
-{
-	const Recipe structure = structureOf(base);
-	const std::vector<Unit> units = unitsOf(structure, base.count());
-	const TileShares shares = sharesOf(recipe); // offsets within one frame: the mean over frames has the same weight
-	const auto size = static_cast<std::size_t>(recipe.size);
-	std::vector<std::size_t> offsets;
-	for (std::size_t offset = 1; offset < size * size; ++offset)
-	{
-		if (shares.pairs[offset] != 0.0)
-		{
-			offsets.push_back(offset);
-		}
-	}
-	ProgressCounter progress(run.progress, "order", variants.size());
-	for (std::size_t v = 0; v < variants.size(); ++v)
-	{
-		std::vector<Met> around;
-		for (const std::size_t offset : offsets)
-		{
-			const std::size_t other =
-				v / (size * size) * size * size + (v / size + offset / size) % size * size + (v + offset) % size;
-			if (other < v)
-			{
-				around.push_back({&variants[other], 2.0 * shares.pairs[offset] / shares.pairs[0]});
-			}
-		}
-		Pattern sorted = variants[v];
-		std::size_t next = 0;
-		for (const std::size_t u : ordered(variants[v], units, structure.centre ? 1 : 0, around))
-		{
-			for (const std::size_t i : units[u])
-			{
-				sorted.points[next] = variants[v].points[i];
-				sorted.weights[next] = variants[v].weights[i];
-				next += 1;
-			}
-		}
-		variants[v] = std::move(sorted);
-		progress.finishOne();
-	}
-}
-
 // Every variant has its own azimuths and jitters with equal weights.
-
-namespace
-{
 
 constexpr double kGolden = 0.6180339887498949;
 constexpr double kShake = 0.02; // fraction of a period
@@ -318,6 +270,42 @@ private:
 };
 
 } // namespace
+
+void orderProgressively(const Pattern& base, const TileRecipe& recipe, std::vector<Pattern>& variants, const RunSettings& run)
+{
+	const Recipe structure = structureOf(base);
+	const std::vector<Unit> units = unitsOf(structure, base.count());
+	const TileShares shares = sharesOf(recipe); // offsets within one frame: the mean over frames has the same weight
+	const auto size = static_cast<std::size_t>(recipe.size);
+	const std::vector<std::size_t> offsets = shares.offsets(size * size);
+	ProgressCounter progress(run.progress, "order", variants.size());
+	for (std::size_t v = 0; v < variants.size(); ++v)
+	{
+		std::vector<Met> around;
+		for (const std::size_t offset : offsets)
+		{
+			const std::size_t other =
+				v / (size * size) * size * size + (v / size + offset / size) % size * size + (v + offset) % size;
+			if (other < v)
+			{
+				around.push_back({&variants[other], 2.0 * shares.pairs[offset] / shares.pairs[0]});
+			}
+		}
+		Pattern sorted = variants[v];
+		std::size_t next = 0;
+		for (const std::size_t u : ordered(variants[v], units, structure.centre ? 1 : 0, around))
+		{
+			for (const std::size_t i : units[u])
+			{
+				sorted.points[next] = variants[v].points[i];
+				sorted.weights[next] = variants[v].weights[i];
+				next += 1;
+			}
+		}
+		variants[v] = std::move(sorted);
+		progress.finishOne();
+	}
+}
 
 std::unique_ptr<TileProblem> sliceProblem(const Pattern& base, const TileRecipe& recipe, std::size_t variants)
 {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Variants with their own points and weights, found by one descent over all of them.
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/round.h"
@@ -284,109 +285,7 @@ PatternTile tileOf(const Pattern& base, const VariantUnion& all, std::size_t var
 	return tile;
 }
 
-} // namespace
-
-Recipe structureOf(const Pattern& base)
-{
-	Recipe structure;
-	structure.domain = base.domain;
-	structure.count = static_cast<int>(base.count());
-	structure.centre = !isDirectional(base.domain) && base.points.front() == glm::dvec3(0.0);
-	const std::size_t first = structure.centre ? 1 : 0;
-	bool symmetric = base.domain != Domain::hemisphere && base.count() > first && (base.count() - first) % 2 == 0;
-	for (std::size_t i = first; symmetric && i + 1 < base.count(); i += 2)
-	{
-		symmetric = base.points[i] == -base.points[i + 1] && base.weights[i] == base.weights[i + 1];
-	}
-	structure.symmetric = symmetric;
-	return structure;
-}
-
-uint64_t pointsMemory(const Pattern& base, const TileRecipe& recipe, int threads)
-{
-	const TileShares shares = recipe.filters.empty() ? TileShares{} : sharesOf(recipe);
-	const uint64_t variants = variantsOf(recipe);
-	const uint64_t samples = variants * base.count();
-	const bool moments = byMoments(base.domain, shares, base.count());
-	const bool near = recipe.size > kLargestAlone;
-	const uint64_t starts = startsOf(base.domain, recipe, static_cast<std::size_t>(samples));
-	const bool slices = base.domain == Domain::slice;
-	const Recipe structure = structureOf(base);
-	const uint64_t slots = slices ? base.count() : Layout(structure).freeCount() + (structure.centre ? 1U : 0U);
-	const uint64_t numbers = variants * slots * (slices ? 2 : isPlanar(base.domain) ? 3 : 4);
-	// L-BFGS: position, gradient, direction, the next two, and the step pairs plus one under construction.
-	const uint64_t descent =
-		8 * numbers * (4 + 2 * (1 + static_cast<uint64_t>(moments ? kMemoryByMoments : LbfgsSettings{}.memory)));
-	const uint64_t kUnion = 32;     // point and weight; the gradient takes the same again
-	const uint64_t kSums = 40 + 40; // tileSquaredError, per sample: itself, and the sums of each task
-	const uint64_t error = moments ? formBytes(base.domain) + variants * momentBytes(base.domain, shares)
-								   : samples * (kSums + (samples > 1024 ? 15 * 40 : 0));
-	return std::min<uint64_t>(starts, static_cast<uint64_t>(threads)) * (descent + 2 * kUnion * samples + error) +
-		   starts * 8 * numbers + (near ? kUnion * samples + variants * sizeof(Pattern) : 0);
-}
-
-PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, std::span<const Pattern> near, const RunSettings& run)
-{
-	const TileShares shares = recipe.filters.empty() ? TileShares{} : sharesOf(recipe);
-	const std::size_t variants = variantsOf(recipe);
-	const bool moments = byMoments(base.domain, shares, base.count());
-	const std::size_t starts = startsOf(base.domain, recipe, variants * base.count());
-	const std::size_t drawn = starts - (near.empty() ? 0 : 1);
-	// Among many points of the ball or the hemisphere, one is always near the border and would hold up all others.
-	const bool open = !recipe.filters.empty() && base.domain != Domain::disk;
-	const std::unique_ptr<TileProblem> problem =
-		base.domain == Domain::slice ? sliceProblem(base, recipe, variants) : std::make_unique<FreeTile>(base, variants, open);
-	std::vector<std::vector<double>> ends(starts);
-	std::vector<double> values(starts);
-	const int inner_threads = starts == 1 ? run.threads : 1;
-	LbfgsSettings settings;
-	settings.max_iterations = moments ? iterationsByMoments(variants) : iterationLimit(variants * base.count());
-	settings.memory = moments ? kMemoryByMoments : settings.memory;
-	settings.relative_decrease = 1e-5;
-	ProgressCounter progress(run.progress, "starts", starts * stepsOf(settings));
-	parallelFor(starts, run.threads,
-				[&](std::size_t k)
-				{
-					Random random(recipe.seed, k);
-					ends[k] = k < drawn ? problem->start(k, random) : problem->startNear(near, random);
-					VariantUnion all;
-					EnergyGradient by_all;
-					std::optional<TileMoments> by_moments;
-					if (moments)
-					{
-						by_moments.emplace(base.domain, shares);
-					}
-					const Objective objective = [&](std::span<const double> x, std::span<double> gradient)
-					{
-						if (!problem->unpack(x, all))
-						{
-							return std::numeric_limits<double>::infinity();
-						}
-						const double value =
-							by_moments ? (*by_moments)(all.points, all.weights, by_all, inner_threads)
-							: shares.pairs.empty()
-								? tileError(base.domain, all, variants, lambdaOf(recipe), by_all, inner_threads)
-								: tileSquaredError(base.domain, shares, all.points, all.weights, &by_all, inner_threads);
-						problem->pullBack(x, all, by_all, gradient);
-						return value;
-					};
-					StartProgress start_progress(progress, stepsOf(settings));
-					LbfgsSettings watched = settings;
-					watched.seen = [&start_progress](std::span<const double>)
-					{
-						start_progress.step();
-					};
-					values[k] = minimise(objective, ends[k], watched);
-				});
-	VariantUnion all;
-	problem->unpack(ends[static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin())], all);
-	return tileOf(base, all, variants);
-}
-
 // Variants that are transformed copies of the base: descent on angles and scales, even rotations, or random reflections.
-
-namespace
-{
 
 Points transformed(Domain domain, std::span<const glm::dvec3> points, const TileTransform& t)
 {
@@ -547,12 +446,7 @@ std::vector<TileTransform> descendedTransforms(const Pattern& base, const TileRe
 					values[k] = minimise(objective, ends[k], watched);
 				});
 	const std::size_t best = static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin());
-	std::vector<TileTransform> result;
-	for (std::size_t v = 0; v < variants; ++v)
-	{
-		result.push_back(TransformsError::transformOf(ends[best], v));
-	}
-	return result;
+	return listOf(variants, [&](std::size_t v) { return TransformsError::transformOf(ends[best], v); });
 }
 
 PatternTile copiesOf(const Pattern& base, std::vector<TileTransform> transforms)
@@ -575,6 +469,103 @@ PatternTile copiesOf(const Pattern& base, std::vector<TileTransform> transforms)
 }
 
 } // namespace
+
+Recipe structureOf(const Pattern& base)
+{
+	Recipe structure;
+	structure.domain = base.domain;
+	structure.count = static_cast<int>(base.count());
+	structure.centre = !isDirectional(base.domain) && base.points.front() == glm::dvec3(0.0);
+	const std::size_t first = structure.centre ? 1 : 0;
+	bool symmetric = base.domain != Domain::hemisphere && base.count() > first && (base.count() - first) % 2 == 0;
+	for (std::size_t i = first; symmetric && i + 1 < base.count(); i += 2)
+	{
+		symmetric = base.points[i] == -base.points[i + 1] && base.weights[i] == base.weights[i + 1];
+	}
+	structure.symmetric = symmetric;
+	return structure;
+}
+
+uint64_t pointsMemory(const Pattern& base, const TileRecipe& recipe, int threads)
+{
+	const TileShares shares = recipe.filters.empty() ? TileShares{} : sharesOf(recipe);
+	const uint64_t variants = variantsOf(recipe);
+	const uint64_t samples = variants * base.count();
+	const bool moments = byMoments(base.domain, shares, base.count());
+	const bool near = recipe.size > kLargestAlone;
+	const uint64_t starts = startsOf(base.domain, recipe, static_cast<std::size_t>(samples));
+	const bool slices = base.domain == Domain::slice;
+	const Recipe structure = structureOf(base);
+	const uint64_t slots = slices ? base.count() : Layout(structure).freeCount() + (structure.centre ? 1U : 0U);
+	const uint64_t numbers = variants * slots * (slices ? 2 : isPlanar(base.domain) ? 3 : 4);
+	// L-BFGS: position, gradient, direction, the next two, and the step pairs plus one under construction.
+	const uint64_t descent =
+		8 * numbers * (4 + 2 * (1 + static_cast<uint64_t>(moments ? kMemoryByMoments : LbfgsSettings{}.memory)));
+	const uint64_t kUnion = 32;     // point and weight; the gradient takes the same again
+	const uint64_t kSums = 40 + 40; // tileSquaredError, per sample: itself, and the sums of each task
+	const uint64_t error = moments ? formBytes(base.domain) + variants * momentBytes(base.domain, shares)
+								   : samples * (kSums + (samples > 1024 ? 15 * 40 : 0));
+	return std::min<uint64_t>(starts, static_cast<uint64_t>(threads)) * (descent + 2 * kUnion * samples + error) +
+		   starts * 8 * numbers + (near ? kUnion * samples + variants * sizeof(Pattern) : 0);
+}
+
+PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, std::span<const Pattern> near, const RunSettings& run)
+{
+	const TileShares shares = recipe.filters.empty() ? TileShares{} : sharesOf(recipe);
+	const std::size_t variants = variantsOf(recipe);
+	const bool moments = byMoments(base.domain, shares, base.count());
+	const std::size_t starts = startsOf(base.domain, recipe, variants * base.count());
+	const std::size_t drawn = starts - (near.empty() ? 0 : 1);
+	// Among many points of the ball or the hemisphere, one is always near the border and would hold up all others.
+	const bool open = !recipe.filters.empty() && base.domain != Domain::disk;
+	const std::unique_ptr<TileProblem> problem =
+		base.domain == Domain::slice ? sliceProblem(base, recipe, variants) : std::make_unique<FreeTile>(base, variants, open);
+	std::vector<std::vector<double>> ends(starts);
+	std::vector<double> values(starts);
+	const int inner_threads = starts == 1 ? run.threads : 1;
+	LbfgsSettings settings;
+	settings.max_iterations = moments ? iterationsByMoments(variants) : iterationLimit(variants * base.count());
+	settings.memory = moments ? kMemoryByMoments : settings.memory;
+	settings.relative_decrease = 1e-5;
+	ProgressCounter progress(run.progress, "starts", starts * stepsOf(settings));
+	parallelFor(starts, run.threads,
+				[&](std::size_t k)
+				{
+					Random random(recipe.seed, k);
+					ends[k] = k < drawn ? problem->start(k, random) : problem->startNear(near, random);
+					VariantUnion all;
+					EnergyGradient by_all;
+					std::optional<TileMoments> by_moments;
+					if (moments)
+					{
+						by_moments.emplace(base.domain, shares);
+					}
+					const Objective objective = [&](std::span<const double> x, std::span<double> gradient)
+					{
+						if (!problem->unpack(x, all))
+						{
+							return std::numeric_limits<double>::infinity();
+						}
+						const double value =
+							by_moments ? (*by_moments)(all.points, all.weights, by_all, inner_threads)
+							: shares.pairs.empty()
+								? tileError(base.domain, all, variants, lambdaOf(recipe), by_all, inner_threads)
+								: tileSquaredError(base.domain, shares, all.points, all.weights, &by_all, inner_threads);
+						problem->pullBack(x, all, by_all, gradient);
+						return value;
+					};
+					StartProgress start_progress(progress, stepsOf(settings));
+					LbfgsSettings watched = settings;
+					watched.seen = [&start_progress](std::span<const double>)
+					{
+						start_progress.step();
+					};
+					values[k] = minimise(objective, ends[k], watched);
+				});
+	VariantUnion all;
+	problem->unpack(ends[static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin())], all);
+	return tileOf(base, all, variants);
+}
 
 PatternTile transformedTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run)
 {

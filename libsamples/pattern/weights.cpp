@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: C. Lawson and R. Hanson, "Solving Least Squares Problems", 1974, chapter 23 (the active set).
 #include "core/error.h"
+#include "core/lists.h"
 #include "core/math.h"
 #include "pattern/eigen.h"
 #include "pattern/methods.h"
@@ -153,11 +154,7 @@ std::vector<double> weightsFor(const Recipe& recipe, const Layout& layout, std::
 		weights = fittedWeights(recipe.domain, points);
 	}
 	layout.symmetrise(weights);
-	double sum = 0.0;
-	for (const double w : weights)
-	{
-		sum += w;
-	}
+	const double sum = sumOver(weights);
 	for (double& w : weights)
 	{
 		w /= sum;
@@ -291,11 +288,7 @@ std::vector<double> equalisingPowers(Domain domain, std::span<const glm::dvec3> 
 		throw Error(ExitCode::runtime, "equal cells: Newton's method stopped at a relative error of " +
 										   std::to_string(residual.error) + ", expected 1e-9; are there duplicate points?");
 	}
-	double mean = 0.0;
-	for (const double power : powers)
-	{
-		mean += power / static_cast<double>(powers.size());
-	}
+	const double mean = sumOver(powers, [&powers](double power) { return power / static_cast<double>(powers.size()); });
 	for (double& power : powers)
 	{
 		power -= mean;

@@ -5,7 +5,6 @@
 #include "core/text.h"
 #include "core/work_units.h"
 #include "scene/reference.h"
-#include "volume/compensate.h"
 #include "volume/sight.h"
 
 #include <glm/geometric.hpp>
@@ -16,7 +15,6 @@
 #include <cmath>
 #include <memory>
 #include <span>
-#include <string>
 #include <utility>
 
 namespace nook

@@ -96,8 +96,6 @@ uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings);
 // `degrade` even after every step that may be left out.
 BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, const RunSettings& run);
 
-// Volumes as they were made, or as a file holds them → facts.
-
 // Volumes that were made. `quantised`: the change by 16-bit corners, where it was measured.
 void describeBuilt(const BuiltVolumes& built, const VolumeFile& file, const VolumeSettings& settings,
 				   const std::optional<VerifyResult>& quantised, Facts& to);

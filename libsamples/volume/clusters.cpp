@@ -61,17 +61,11 @@ int axisOf(glm::dvec3 area)
 Item itemOf(const VolumeSet& volumes, const Occluder& polygon)
 {
 	const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(polygon);
-	glm::dvec3 least(1e300);
-	glm::dvec3 most(-1e300);
-	for (const glm::dvec3 corner : corners)
-	{
-		least = glm::min(least, corner);
-		most = glm::max(most, corner);
-	}
-	const glm::dvec3 extent = most - least;
+	const Bounds box = boundsAround(corners);
+	const glm::dvec3 extent = box.most - box.least;
 	const glm::dvec3 area = areaVector(corners);
 	const int size_class = classOf(std::max({extent.x, extent.y, extent.z}), volumes.distance_m);
-	return {0.5 * (least + most), static_cast<double>(polygon.alpha) * glm::length(area),
+	return {0.5 * (box.least + box.most), static_cast<double>(polygon.alpha) * glm::length(area),
 			4 * size_class + (size_class > 0 ? axisOf(area) : 0)};
 }
 
@@ -193,20 +187,25 @@ Occluders reordered(const Occluders& occluders, std::span<const uint32_t> order)
 
 } // namespace
 
-VolumeBox volumeBox(const VolumeSet& volumes, std::size_t index)
+Bounds boundsAround(std::span<const glm::dvec3> points)
+{
+	Bounds bounds;
+	for (const glm::dvec3& point : points)
+	{
+		bounds.least = glm::min(bounds.least, point);
+		bounds.most = glm::max(bounds.most, point);
+	}
+	return bounds;
+}
+
+Bounds volumeBox(const VolumeSet& volumes, std::size_t index)
 {
 	const Occluder& polygon = volumes.occluders.polygons[index];
 	const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(polygon);
 	std::array<glm::dvec3, 2 * kMaxOccluderCorners> points;
 	const std::span<glm::dvec3> used = std::span(points).first(2 * corners.size());
 	prismOf(corners, frontOf(corners), shapeOf(volumes, polygon), used);
-	VolumeBox box;
-	for (const glm::dvec3 point : used)
-	{
-		box.least = glm::min(box.least, point);
-		box.most = glm::max(box.most, point);
-	}
-	return box;
+	return boundsAround(used);
 }
 
 void clusterVolumes(VolumeSet& volumes, const ClusterSettings& settings, const RunSettings& run)
@@ -249,10 +248,10 @@ void clusterVolumes(VolumeSet& volumes, const ClusterSettings& settings, const R
 	{
 		VolumeCluster& cluster = volumes.clusters[i];
 		const std::size_t first = i == 0 ? 0 : ends[i - 1];
-		VolumeBox box;
+		Bounds box;
 		for (std::size_t polygon = first; polygon < ends[i]; ++polygon)
 		{
-			const VolumeBox one = volumeBox(volumes, polygon);
+			const Bounds one = volumeBox(volumes, polygon);
 			box.least = glm::min(box.least, one.least);
 			box.most = glm::max(box.most, one.most);
 		}

@@ -4,20 +4,17 @@
 // violators).
 #include "volume/compensate.h"
 
+#include "core/lists.h"
 #include "core/math.h"
 #include "scene/camera_choice.h"
 #include "volume/receivers.h"
 #include "volume/sight.h"
-#include "volume/volumes.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
-#include <cstdint>
 #include <numeric>
 #include <optional>
-#include <vector>
 
 namespace nook
 {
@@ -331,13 +328,8 @@ std::vector<double> referenceOf(const Tracer& tracer, std::span<const ReferenceP
 	reference.radius_m = radius_m;
 	reference.rays = settings.rays;
 	reference.seed = settings.seed;
-	std::vector<double> occlusions;
-	occlusions.reserve(points.size());
-	for (const ReferenceValue& value : referenceAtPoints(tracer, points, reference, run))
-	{
-		occlusions.push_back(1.0 - value.visibility);
-	}
-	return occlusions;
+	return mapped(referenceAtPoints(tracer, points, reference, run),
+				  [](const ReferenceValue& value) { return 1.0 - value.visibility; });
 }
 
 // Uses the same directions for all three points of a triple, so that their noise cancels in the differences.

@@ -24,16 +24,6 @@ using detail::FoundReceiver;
 using detail::kDropBlock;
 using detail::SideVerdict;
 
-double polygonArea(std::span<const glm::dvec3> corners)
-{
-	double area = 0.0;
-	for (std::size_t i = 2; i < corners.size(); ++i)
-	{
-		area += 0.5 * glm::length(glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]));
-	}
-	return area;
-}
-
 SideVerdict find(const DropSearch& search, std::size_t polygon, unsigned side)
 {
 	SideVerdict found = SideVerdict::alone;

@@ -45,15 +45,9 @@ VolumeRegion nearRegion(const DropSearch& search, std::size_t polygon, unsigned 
 {
 	VolumeRegion region = search.region(polygon, side);
 	const double far_m = std::sqrt(search.areas[polygon] / (kPi * kHiddenLeast));
-	glm::dvec3 least(1e300);
-	glm::dvec3 most(-1e300);
-	for (const glm::dvec3& corner : search.corners(polygon))
-	{
-		least = glm::min(least, corner - far_m);
-		most = glm::max(most, corner + far_m);
-	}
-	region.box.least = glm::max(region.box.least, least);
-	region.box.most = glm::min(region.box.most, most);
+	const Bounds box = boundsAround(search.corners(polygon));
+	region.box.least = glm::max(region.box.least, box.least - far_m);
+	region.box.most = glm::min(region.box.most, box.most + far_m);
 	return region;
 }
 

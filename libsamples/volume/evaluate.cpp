@@ -20,7 +20,6 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <string>
 
 namespace nook
 {
@@ -129,15 +128,10 @@ void noOcclusion(const RTCOccludedFunctionNArguments*) {}
 // The centre of all corners, and the rounding error of coordinates relative to it.
 void VolumeEvaluator::Data::place()
 {
-	glm::dvec3 least(1e300);
-	glm::dvec3 most(-1e300);
-	for (const glm::dvec3& corner : set.occluders.corners)
-	{
-		least = glm::min(least, corner);
-		most = glm::max(most, corner);
-	}
-	centre = set.occluders.corners.empty() ? glm::dvec3(0.0) : 0.5 * (least + most);
-	const glm::dvec3 half = set.occluders.corners.empty() ? glm::dvec3(0.0) : 0.5 * (most - least);
+	const Bounds box =
+		set.occluders.corners.empty() ? Bounds{glm::dvec3(0.0), glm::dvec3(0.0)} : boundsAround(set.occluders.corners);
+	centre = 0.5 * (box.least + box.most);
+	const glm::dvec3 half = 0.5 * (box.most - box.least);
 	grown = static_cast<float>(16.0 * kUnitRoundoff * (std::max({half.x, half.y, half.z}) + 64.0 * set.distance_m));
 }
 
@@ -151,13 +145,7 @@ void VolumeEvaluator::Data::shape(std::size_t index)
 	const VolumeShape shape = shapeOf(set, polygon);
 	prismOf(corners, front, shape, used);
 	fronts[index] = glm::vec3(front);
-	glm::dvec3 least(1e300);
-	glm::dvec3 most(-1e300);
-	for (std::size_t i = 0; i < used.size(); ++i)
-	{
-		least = glm::min(least, used[i]);
-		most = glm::max(most, used[i]);
-	}
+	const Bounds box = boundsAround(used);
 	for (std::size_t i = 0; i < corners.size(); ++i)
 	{
 		// Component within the plane; clamped corners (eq. 13's 2δ) end exactly there.
@@ -166,8 +154,8 @@ void VolumeEvaluator::Data::shape(std::size_t index)
 		clamped[index] |= !set.exact_bounds && across > (2.0 - 1e-9) * shape.distance_m * shape.side_share ? 1 : 0;
 		rings[polygon.first_corner + i] = used[i];
 	}
-	const glm::vec3 low = glm::vec3(least - centre) - grown;
-	const glm::vec3 high = glm::vec3(most - centre) + grown;
+	const glm::vec3 low = glm::vec3(box.least - centre) - grown;
+	const glm::vec3 high = glm::vec3(box.most - centre) + grown;
 	boxes[index] = {low.x, low.y, low.z, 0.0F, high.x, high.y, high.z, 0.0F};
 }
 

@@ -7,12 +7,10 @@
 #include "volume/volumes.h"
 
 #include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
 
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 

@@ -131,67 +131,8 @@ std::vector<uint32_t> grow(const Work& work, uint32_t seed, glm::dvec3 normal, d
 	return grown;
 }
 
-} // namespace
-
-std::vector<Region> flatRegions(std::span<const uint32_t> group, const Soup& soup, const Surface& surface,
-								const OccluderSettings& settings, std::span<uint32_t> labels)
-{
-	const Work work{soup, surface, settings, labels, soup.level->positions[surface.triangles[group[0]].x]};
-	glm::dvec3 sum(0.0);
-	std::vector<std::pair<double, uint32_t>> seeds;
-	for (const uint32_t t : group)
-	{
-		const glm::dvec3 area = work.area(t);
-		sum += area;
-		seeds.emplace_back(-glm::length(area), t);
-		labels[t] = kNone;
-	}
-	double flat_m = 0.0;
-	const double length = glm::length(sum);
-	std::vector<Region> regions;
-	if (length > 0.0 && isWholeFlat(work, group, sum / length, flat_m))
-	{
-		for (const uint32_t t : group)
-		{
-			labels[t] = group[0];
-		}
-		regions.push_back(regionOf(work, {group.begin(), group.end()}, sum / length, flat_m));
-		return regions;
-	}
-	std::sort(seeds.begin(), seeds.end());
-	for (const auto& [size, seed] : seeds)
-	{
-		if (labels[seed] == kNone)
-		{
-			const glm::dvec3 normal = work.area(seed) / -size;
-			flat_m = work.flatnessOf(seed);
-			regions.push_back(regionOf(work, grow(work, seed, normal, flat_m), normal, flat_m));
-		}
-	}
-	return regions;
-}
-
-PlaneAxes::PlaneAxes(glm::dvec3 origin_, glm::dvec3 normal) : origin(origin_)
-{
-	const glm::dvec3 size = glm::abs(normal);
-	const glm::dvec3 least = size.x <= size.y && size.x <= size.z ? glm::dvec3(1, 0, 0)
-							 : size.y <= size.z                   ? glm::dvec3(0, 1, 0)
-																  : glm::dvec3(0, 0, 1);
-	x = glm::normalize(glm::cross(least, normal));
-	y = glm::cross(normal, x);
-}
-
-glm::dvec2 PlaneAxes::of(glm::dvec3 position) const
-{
-	const glm::dvec3 offset = position - origin;
-	return {glm::dot(x, offset), glm::dot(y, offset)};
-}
-
 // This work is based on: David Douglas and Thomas Peucker, Algorithms for the Reduction of the Number of Points Required to
 // Represent a Digitized Line or its Caricature, 1973.
-
-namespace
-{
 
 struct Edge
 {
@@ -384,6 +325,60 @@ private:
 };
 
 } // namespace
+
+std::vector<Region> flatRegions(std::span<const uint32_t> group, const Soup& soup, const Surface& surface,
+								const OccluderSettings& settings, std::span<uint32_t> labels)
+{
+	const Work work{soup, surface, settings, labels, soup.level->positions[surface.triangles[group[0]].x]};
+	glm::dvec3 sum(0.0);
+	std::vector<std::pair<double, uint32_t>> seeds;
+	for (const uint32_t t : group)
+	{
+		const glm::dvec3 area = work.area(t);
+		sum += area;
+		seeds.emplace_back(-glm::length(area), t);
+		labels[t] = kNone;
+	}
+	double flat_m = 0.0;
+	const double length = glm::length(sum);
+	std::vector<Region> regions;
+	if (length > 0.0 && isWholeFlat(work, group, sum / length, flat_m))
+	{
+		for (const uint32_t t : group)
+		{
+			labels[t] = group[0];
+		}
+		regions.push_back(regionOf(work, {group.begin(), group.end()}, sum / length, flat_m));
+		return regions;
+	}
+	std::sort(seeds.begin(), seeds.end());
+	for (const auto& [size, seed] : seeds)
+	{
+		if (labels[seed] == kNone)
+		{
+			const glm::dvec3 normal = work.area(seed) / -size;
+			flat_m = work.flatnessOf(seed);
+			regions.push_back(regionOf(work, grow(work, seed, normal, flat_m), normal, flat_m));
+		}
+	}
+	return regions;
+}
+
+PlaneAxes::PlaneAxes(glm::dvec3 origin_, glm::dvec3 normal) : origin(origin_)
+{
+	const glm::dvec3 size = glm::abs(normal);
+	const glm::dvec3 least = size.x <= size.y && size.x <= size.z ? glm::dvec3(1, 0, 0)
+							 : size.y <= size.z                   ? glm::dvec3(0, 1, 0)
+																  : glm::dvec3(0, 0, 1);
+	x = glm::normalize(glm::cross(least, normal));
+	y = glm::cross(normal, x);
+}
+
+glm::dvec2 PlaneAxes::of(glm::dvec3 position) const
+{
+	const glm::dvec3 offset = position - origin;
+	return {glm::dot(x, offset), glm::dot(y, offset)};
+}
 
 std::vector<Loop> outlineOf(const Region& region, const Surface& surface, std::span<const uint32_t> labels,
 							std::span<const glm::dvec3> positions)

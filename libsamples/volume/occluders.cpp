@@ -2,12 +2,12 @@
 #include "volume/occluders.h"
 
 #include "core/error.h"
+#include "core/lists.h"
 #include "core/parallel.h"
 #include "scene/topology.h"
 #include "volume/prism.h"
 #include "volume/surface.h"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <meshoptimizer.h>
 
@@ -15,7 +15,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -47,12 +46,7 @@ namespace
 
 double sumOfHalves(const Occluders& occluders, double length_m)
 {
-	double sum = 0.0;
-	for (const Occluder& polygon : occluders.polygons)
-	{
-		sum += halvesOf(occluders.cornersOf(polygon), length_m);
-	}
-	return sum;
+	return sumOver(occluders.polygons, [&](const Occluder& polygon) { return halvesOf(occluders.cornersOf(polygon), length_m); });
 }
 
 } // namespace
@@ -65,12 +59,7 @@ double alphaOf(const Soup& soup, uint32_t look, std::span<const glm::dvec3> corn
 		return 1.0;
 	}
 	const TextureMap map = textureMapOf(soup, look);
-	std::vector<glm::dvec2> uvs;
-	for (const glm::dvec3 corner : corners)
-	{
-		uvs.push_back(map.at(corner));
-	}
-	return coverageOf(*soup.level, material, uvs);
+	return coverageOf(*soup.level, material, mapped(corners, [&map](glm::dvec3 corner) { return map.at(corner); }));
 }
 
 double cutLength(const Occluders& occluders, const OccluderSettings& settings)
@@ -347,12 +336,7 @@ private:
 	// `look`: a triangle with the same material and texture mapping.
 	void addPolygon(std::span<const uint32_t> vertices, uint32_t look, uint32_t lowest, Made& made) const
 	{
-		std::vector<glm::dvec3> corners;
-		for (const uint32_t vertex : vertices)
-		{
-			corners.push_back(m_positions[vertex]);
-		}
-		addCorners(corners, look, lowest, made);
+		addCorners(mapped(vertices, [this](uint32_t vertex) { return m_positions[vertex]; }), look, lowest, made);
 	}
 
 	void addCorners(std::span<const glm::dvec3> corners, uint32_t look, uint32_t lowest, Made& made) const
@@ -407,11 +391,7 @@ private:
 		}
 		std::sort(vertices.begin(), vertices.end());
 		vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-		std::vector<glm::dvec2> points;
-		for (const uint32_t vertex : vertices)
-		{
-			points.push_back(axes.of(m_positions[vertex]));
-		}
+		const auto points = mapped(vertices, [&](uint32_t vertex) { return axes.of(m_positions[vertex]); });
 		std::vector<Piece> triangles;
 		std::vector<std::pair<uint32_t, uint32_t>> neighbours;
 		for (std::size_t i = 0; i < region.triangles.size(); ++i)

@@ -37,8 +37,6 @@ glm::dvec3 frontOf(std::span<const glm::dvec3> corners);
 namespace nook::detail
 {
 
-// Cuts a long convex polygon into pieces.
-
 // Halves a convex, flat polygon along or across its longest edge until pieces are at most `longest_m` long in both directions and
 // have at most `most_corners` ≥ 4 corners. The pieces cover the polygon; those without area are dropped.
 std::vector<std::vector<glm::dvec3>> halvedPolygon(std::span<const glm::dvec3> corners, double longest_m, std::size_t most_corners);

@@ -4,7 +4,6 @@
 #include "core/error.h"
 #include "core/math.h"
 #include "core/parallel.h"
-#include "core/random.h"
 #include "scene/camera_choice.h"
 #include "volume/drop.h"
 #include "volume/evaluate.h"
@@ -21,6 +20,17 @@
 
 namespace nook
 {
+
+double polygonArea(std::span<const glm::dvec3> corners)
+{
+	double area = 0.0;
+	for (std::size_t i = 2; i < corners.size(); ++i)
+	{
+		area += 0.5 * glm::length(glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]));
+	}
+	return area;
+}
+
 namespace
 {
 
@@ -226,11 +236,7 @@ bool lookOut(const Tracer& tracer, glm::dvec3 point, glm::dvec3 normal, double r
 template <class Visit> bool anyPoint(std::span<const glm::dvec3> corners, double step_m, uint32_t turn, Visit&& visit)
 {
 	assert(corners.size() >= 3);
-	double area = 0.0;
-	for (std::size_t i = 2; i < corners.size(); ++i)
-	{
-		area += 0.5 * glm::length(glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]));
-	}
+	const double area = polygonArea(corners);
 	const int points = static_cast<int>(std::clamp(std::ceil(area / (step_m * step_m)), 4.0, 64.0));
 	for (int k = 0; k < points; ++k)
 	{
@@ -538,9 +544,6 @@ VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::spa
 		{
 			result.greatest = difference;
 			result.worst_position = receivers[i].position;
-			result.worst_normal = receivers[i].normal;
-			result.worst_all = before[i];
-			result.worst_kept = after[i];
 		}
 	}
 	const double count = std::max(1.0, static_cast<double>(receivers.size()));

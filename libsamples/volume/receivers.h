@@ -68,8 +68,6 @@ bool isOpen(const Tracer& tracer, const MaterialSides& materials, std::span<cons
 bool seesReceiver(const Tracer& tracer, const ReceiverSides& sides, std::span<const glm::dvec3> corners, glm::dvec3 normal,
 				  double step_m, double reach_m, uint32_t turn);
 
-// Compares two sets of volumes of one level at sampled receivers.
-
 struct ReceiverSettings
 {
 	int views = 4;           // automatic cameras
@@ -98,9 +96,6 @@ struct VerifyResult
 	std::size_t behind = 0; // receivers with more than kHiddenLeast from behind
 	double greatest_behind = 0.0;
 	glm::dvec3 worst_position{0.0}; // where `greatest` occurs
-	glm::dvec3 worst_normal{0.0};
-	double worst_all = 0.0; // both sums there
-	double worst_kept = 0.0;
 };
 
 // VolumeEvaluator::occlusion() at points.
@@ -109,5 +104,8 @@ std::vector<double> sumsAt(const VolumeSet& volumes, std::span<const ReferencePo
 // `behind`: for each receiver the part of `all` that comes from behind opaque surfaces, wrongly; empty: none.
 VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::span<const ReferencePoint> receivers,
 						   const RunSettings& run, std::span<const double> behind = {});
+
+// Returns the area of a convex polygon.
+double polygonArea(std::span<const glm::dvec3> corners);
 
 } // namespace nook

@@ -5,9 +5,6 @@
 #include "core/math.h"
 #include "core/parallel.h"
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -76,6 +73,32 @@ std::size_t clipped(const VolumeRegion& region, const std::array<glm::dvec3, 3>&
 		}
 	}
 	return size;
+}
+
+// Split at the median of the boxes' centres along the longest axis, down to a few triangles.
+// Not Embree's tree, whose 32-bit boxes would miss what just touches a volume. Not CGAL's, whose order depends on the standard
+// library's nth_element, so that a search would stop at different triangles on different systems.
+
+constexpr std::size_t kLeaf = 4;
+constexpr std::size_t kTreeBlock = 4096; // minimum triangles per thread
+
+// The number of nodes of a subtree depends only on n, so that all positions in the list are known in advance.
+std::size_t nodesOf(std::size_t n)
+{
+	return n <= kLeaf ? 1 : 1 + nodesOf(n / 2) + nodesOf(n - n / 2);
+}
+
+std::vector<uint32_t> indicesOf(std::span<const uint8_t> counted)
+{
+	std::vector<uint32_t> indices;
+	for (std::size_t i = 0; i < counted.size(); ++i)
+	{
+		if (counted[i] != 0)
+		{
+			indices.push_back(static_cast<uint32_t>(i));
+		}
+	}
+	return indices;
 }
 
 } // namespace
@@ -224,16 +247,9 @@ double greatestShare(const VolumeRegion& region, std::span<const glm::dvec3> pol
 	}
 	greatest_m = std::min(greatest_m, distance_m) + kPlaneBias * distance_m;
 	// Distance between the two boxes.
-	glm::dvec3 least(1e300);
-	glm::dvec3 most(-1e300);
-	for (const glm::dvec3& corner : polygon)
-	{
-		least = glm::min(least, corner);
-		most = glm::max(most, corner);
-	}
-	const auto& p = receiver.corners;
-	const glm::dvec3 apart = glm::max(
-		glm::dvec3(0.0), glm::max(least - glm::max(p[0], glm::max(p[1], p[2])), glm::min(p[0], glm::min(p[1], p[2])) - most));
+	const Bounds box = boundsAround(polygon);
+	const Bounds part = boundsAround(receiver.corners);
+	const glm::dvec3 apart = glm::max(glm::dvec3(0.0), glm::max(box.least - part.most, part.least - box.most));
 	least_m = std::max({least_m, glm::length(apart), 0.5 * kPlaneBias * distance_m});
 	// Form factor = ∫ cos θ cos θ' / (π r²) dA with cos θ ≤ rise / r and cos θ' ≤ height / r; the lowest part of the hemisphere, up
 	// to the elevation asin(rise / r), contributes sin² of that.
@@ -241,37 +257,6 @@ double greatestShare(const VolumeRegion& region, std::span<const glm::dvec3> pol
 	const double by_area = area_m2 * cosine * std::min(1.0, greatest_m / least_m) / (kPi * least_m * least_m);
 	return g * std::min(by_area, cosine * cosine);
 }
-
-// Split at the median of the boxes' centres along the longest axis, down to a few triangles.
-// Not Embree's tree, whose 32-bit boxes would miss what just touches a volume. Not CGAL's, whose order depends on the standard
-// library's nth_element, so that a search would stop at different triangles on different systems.
-
-namespace
-{
-
-constexpr std::size_t kLeaf = 4;
-constexpr std::size_t kTreeBlock = 4096; // minimum triangles per thread
-
-// The number of nodes of a subtree depends only on n, so that all positions in the list are known in advance.
-std::size_t nodesOf(std::size_t n)
-{
-	return n <= kLeaf ? 1 : 1 + nodesOf(n / 2) + nodesOf(n - n / 2);
-}
-
-std::vector<uint32_t> indicesOf(std::span<const uint8_t> counted)
-{
-	std::vector<uint32_t> indices;
-	for (std::size_t i = 0; i < counted.size(); ++i)
-	{
-		if (counted[i] != 0)
-		{
-			indices.push_back(static_cast<uint32_t>(i));
-		}
-	}
-	return indices;
-}
-
-} // namespace
 
 // A subtree's first node and its triangles. Empty: none.
 struct TriangleTree::Range

@@ -15,9 +15,7 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
-#include <cmath>
 #include <limits>
 
 namespace nook

@@ -6,14 +6,11 @@
 #include "scene/topology.h"
 #include "volume/evaluate.h"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <functional>
-#include <vector>
 
 namespace nook::detail
 {

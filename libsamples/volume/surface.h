@@ -100,8 +100,6 @@ struct Proxies
 // piece that would vanish is left unchanged, like all other triangles.
 Proxies proxiesOf(const Level& level, std::span<const uint8_t> may_change, double error_m, const RunSettings& run);
 
-// Cuts merged polygons that are long relative to the distance into shorter ones with their own ᾱ.
-
 inline constexpr double kClear = 1.0 / 1024.0; // ᾱ below which a polygon is dropped as clear: a quarter of an 8-bit step
 
 // ᾱ of a polygon with the material and texture coordinates of a triangle.

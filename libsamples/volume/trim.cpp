@@ -4,11 +4,11 @@
 // fragments.
 #include "volume/trim.h"
 
+#include "core/lists.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "volume/evaluate.h"
 #include "volume/prism.h"
-#include "volume/receivers.h"
 #include "volume/sight.h"
 
 #include <glm/common.hpp>
@@ -20,7 +20,6 @@
 #include <cmath>
 #include <numeric>
 #include <utility>
-#include <vector>
 
 namespace nook
 {
@@ -77,12 +76,7 @@ std::vector<uint32_t> nearOrder(const std::vector<ReferencePoint>& points)
 	{
 		least = glm::min(least, point.position);
 	}
-	std::vector<glm::vec3> positions;
-	positions.reserve(points.size());
-	for (const ReferencePoint& point : points)
-	{
-		positions.emplace_back(point.position - least);
-	}
+	const auto positions = mapped(points, [&least](const ReferencePoint& point) { return glm::vec3(point.position - least); });
 	std::vector<uint32_t> places(points.size());
 	if (!points.empty())
 	{

@@ -2,7 +2,6 @@
 #include "volume/volume_glb.h"
 
 #include "core/error.h"
-#include "core/file.h"
 #include "core/json_text.h"
 #include "core/text.h"
 #include "scene/level_glb.h"
@@ -13,8 +12,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
-#include <cmath>
 #include <cstring>
 
 namespace nook
@@ -345,27 +342,7 @@ private:
 	Json m_nodes = Json::array();
 };
 
-} // namespace
-
-VolumeFile volumeGlb(const VolumeSet& volumes, const VolumeFileSettings& settings, std::string_view level,
-					 std::string_view generator, const RunSettings& run)
-{
-	const ProgressCounter stage(run.progress, "file");
-	VolumeFile file;
-	file.packed = packVolumes(volumes, {settings.layout == VolumeLayout::prisms}, run);
-	if (file.packed.polygons.empty() && !volumes.occluders.polygons.empty())
-	{
-		throw Error(ExitCode::invalid_input,
-					std::string(level) + ": found no polygon that is larger than the steps of 16-bit numbers, expected one");
-	}
-	file.bytes = Writer(volumes, file.packed, settings).bytes(level, generator);
-	return file;
-}
-
 // Reads through the header that other programs use, so both reject the same files.
-
-namespace
-{
 
 uint32_t wordAt(std::string_view bytes, std::size_t at)
 {
@@ -394,6 +371,21 @@ template <class Item> std::vector<Item> copied(const Item* items, std::size_t co
 }
 
 } // namespace
+
+VolumeFile volumeGlb(const VolumeSet& volumes, const VolumeFileSettings& settings, std::string_view level,
+					 std::string_view generator, const RunSettings& run)
+{
+	const ProgressCounter stage(run.progress, "file");
+	VolumeFile file;
+	file.packed = packVolumes(volumes, {settings.layout == VolumeLayout::prisms}, run);
+	if (file.packed.polygons.empty() && !volumes.occluders.polygons.empty())
+	{
+		throw Error(ExitCode::invalid_input,
+					std::string(level) + ": found no polygon that is larger than the steps of 16-bit numbers, expected one");
+	}
+	file.bytes = Writer(volumes, file.packed, settings).bytes(level, generator);
+	return file;
+}
 
 bool holdsVolumes(std::string_view bytes)
 {

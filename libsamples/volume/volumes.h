@@ -5,6 +5,7 @@
 #pragma once
 
 #include "core/progress.h"
+#include "scene/level.h"
 
 #include <glm/vec3.hpp>
 
@@ -76,8 +77,6 @@ struct VolumeSet
 	std::vector<VolumeCluster> clusters; // cover the polygons in order, without gaps
 };
 
-// Sorts the polygons of a set into drawing order and clusters.
-
 struct ClusterSettings
 {
 	std::size_t polygons = 128; // maximum per cluster, 1 to 2048
@@ -91,12 +90,10 @@ struct ClusterSettings
 // The order depends only on positions, areas and polygon numbers.
 void clusterVolumes(VolumeSet& volumes, const ClusterSettings& settings, const RunSettings& run);
 
+// Returns the bounding box of points.
+Bounds boundsAround(std::span<const glm::dvec3> points);
+
 // Bounding box of the volume of polygon `index`.
-struct VolumeBox
-{
-	glm::dvec3 least{1e300};
-	glm::dvec3 most{-1e300};
-};
-VolumeBox volumeBox(const VolumeSet& volumes, std::size_t index);
+Bounds volumeBox(const VolumeSet& volumes, std::size_t index);
 
 } // namespace nook

@@ -5,7 +5,7 @@
 # since levels differ in difficulty.
 # usage: held_out.sh FILE.json
 set -eu
-file=${1:?a file of nook fit, expected libsamples/methods/rays.json}
+file=${1:?a file of nook fit, expected docs/measurements/rays.json}
 awk '
 	function value(line) { sub(/^[^:]*: */, "", line); gsub(/[",]/, "", line); return line }
 	/^\t\t\t"method"/ { method = value($0); order[++methods] = method }

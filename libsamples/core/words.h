@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Helpers of those who read files: lower case, numbers of bytes, lists for messages, errors.
+// Helpers of those who read files: lower case, numbers of bytes, errors.
 #pragma once
 
 #include "core/error.h"
@@ -33,17 +33,6 @@ inline uint64_t littleEndian(std::string_view bytes, std::size_t at, std::size_t
 		number |= uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8U * i);
 	}
 	return number;
-}
-
-// The items with commas between them.
-template <class List> std::string commaList(const List& items)
-{
-	std::string text;
-	for (const auto& item : items)
-	{
-		text += (text.empty() ? "" : ", ") + std::string(item);
-	}
-	return text;
 }
 
 // Throws Error "where: found X, expected Y".

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/visibility_image.h"
 
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/words.h"
 #include "pattern/filter_band.h"
@@ -54,7 +55,7 @@ Choice chosen(const Image& image, const std::string& path, const std::string& wa
 		const int index = image.channel(wanted);
 		if (index < 0)
 		{
-			refuseInput(path + ": channels", commaList(image.channels), wanted + " among them");
+			refuseInput(path + ": channels", joinedText(image.channels, ", "), wanted + " among them");
 		}
 		return {index, wanted};
 	}
@@ -79,7 +80,7 @@ Choice chosen(const Image& image, const std::string& path, const std::string& wa
 	{
 		return {r, "R,G,B"};
 	}
-	refuseInput(path + ": channels", commaList(image.channels),
+	refuseInput(path + ": channels", joinedText(image.channels, ", "),
 				"visibility, a single one, Y, or R, G, B that are all gray (channel picks one)");
 }
 
@@ -158,7 +159,7 @@ BentImage bentOf(const Image& image, const std::string& path)
 		}
 		return result;
 	}
-	refuseInput(path + ": channels", commaList(image.channels), "bent.X, bent.Y and bent.Z, or N.X, N.Y and N.Z");
+	refuseInput(path + ": channels", joinedText(image.channels, ", "), "bent.X, bent.Y and bent.Z, or N.X, N.Y and N.Z");
 }
 
 BentAngles anglesBetween(const BentImage& test, const BentImage& reference, std::span<const uint8_t> counted)

@@ -25,7 +25,7 @@ extern const std::string_view volume_glsl;
 // runtime/nook_block.h
 extern const std::string_view nook_block_h;
 
-// rays.json: the `rays` recipes, as written by `nook fit`.
+// rays.json: the `rays` recipes, as written by `nook fit`, without their errors (docs/measurements/rays.json).
 extern const std::string_view rays_json;
 
 // All screen-space kernels, each after those that it uses.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/builtin.h"
 
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/words.h"
 #include "scene/builtin_shapes.h"
@@ -64,8 +65,8 @@ Level builtinLevel(std::string_view name)
 	const bool has_count = base != name;
 	if (found == kBuiltins.end() || (has_count && found->make_sized == nullptr))
 	{
-		refuseInput("builtin", "'" + std::string(name) + "'", "one of " + commaList(builtinNames()) + ", heightfield:N or cave:N",
-					ExitCode::usage);
+		refuseInput("builtin", "'" + std::string(name) + "'",
+					"one of " + joinedText(builtinNames(), ", ") + ", heightfield:N or cave:N", ExitCode::usage);
 	}
 	const std::size_t triangles = has_count ? triangleCount(name.substr(base.size() + 1), *found) : found->triangles;
 	Level level = found->make != nullptr ? found->make() : found->make_sized(triangles);

@@ -26,6 +26,7 @@
 // bathroom, a city quarter, a dragon, a space shuttle and a tree.
 #include "scene/camera_choice.h"
 
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/random.h"
@@ -636,7 +637,8 @@ const LevelCamera& cameraNamed(const Level& level, std::string_view name)
 		names.push_back(camera.name);
 	}
 	refuseInput("camera", "'" + std::string(name) + "'",
-				names.empty() ? "auto:K, as " + level.name + " has no cameras" : commaList(names) + " or auto:K", ExitCode::usage);
+				names.empty() ? "auto:K, as " + level.name + " has no cameras" : joinedText(names, ", ") + " or auto:K",
+				ExitCode::usage);
 }
 
 std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const RunSettings& run)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/gbuffer_file.h"
 
+#include "core/lists.h"
 #include "core/round.h"
 #include "core/text.h"
 #include "core/words.h"
@@ -160,7 +161,7 @@ Name partsOf(const std::string& channel)
 
 [[noreturn]] void refuse(const Image& image, const std::string& path, const std::string& expected)
 {
-	refuseInput(path + ": channels", commaList(image.channels), expected);
+	refuseInput(path + ": channels", joinedText(image.channels, ", "), expected);
 }
 
 int indexIn(const Image& image, const std::string& layer, std::string_view last)

@@ -92,6 +92,14 @@ inline Wide& operator+=(Wide& a, const Wide& b)
 {
 	return a = a + b;
 }
+inline Wide& operator-=(Wide& a, const Wide& b)
+{
+	return a = a - b;
+}
+inline Wide& operator/=(Wide& a, const Wide& b)
+{
+	return a = a / b;
+}
 inline Wide& operator*=(Wide& a, const Wide& b)
 {
 	return a = a * b;

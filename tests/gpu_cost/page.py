@@ -160,12 +160,12 @@ def plot(rows):
         return 20 + 340 * (0.12 - rmse) / (0.12 - 0.04)
 
     def place(cycles, rmse, name):
-        """Where a label overlaps no point and no other label, if anywhere: x, y of its left end."""
-        wide = 6 * len(name)
-        for left, down in itertools.product((6, -6 - wide, -wide / 2), (-4, 12, -14, 22)):
-            box = (x(cycles) + left, y(rmse) + down - 10, x(cycles) + left + wide, y(rmse) + down + 2)
-            if box[2] < 760 and all(box[0] > other[2] or box[2] < other[0] or box[1] > other[3] or box[3] < other[1] for other in taken):
-                break
+        """Where a label overlaps points and other labels least: x, y of its left end."""
+        wide = 6.2 * len(name)
+        boxes = [(x(cycles) + left, y(rmse) + down - 10, x(cycles) + left + wide, y(rmse) + down + 2)
+                 for left, down in itertools.product((6, -6 - wide, -wide / 2), (-4, 12, 4, -14, 22))]
+        box = min(boxes, key=lambda box: (box[2] > 760) + sum(
+            max(0, min(box[2], other[2]) - max(box[0], other[0])) * max(0, min(box[3], other[3]) - max(box[1], other[1])) for other in taken))
         taken.append(box)
         return box[0], box[3] - 2
     out = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 410" font-family="sans-serif" font-size="11">',

@@ -177,14 +177,14 @@ std::string textOf(const std::filesystem::path& path)
 }
 
 constexpr int kEnding = -1;
-std::atomic<int> held{0};    // nesting depth of holds, or kEnding
+std::atomic<int> holds{0};   // nesting depth of holds, or kEnding
 std::atomic<int> pending{0}; // signal received meanwhile
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<void*>::is_always_lock_free);
 
 // While another thread ends the program, no file may be created or renamed.
 void waitIfEnding()
 {
-	while (held == kEnding)
+	while (holds == kEnding)
 	{
 		waitForEnd();
 	}
@@ -195,14 +195,14 @@ void end(int signal)
 {
 	const int before = errno;
 	int free = 0;
-	while (!held.compare_exchange_strong(free, kEnding))
+	while (!holds.compare_exchange_strong(free, kEnding))
 	{
 		if (free == kEnding)
 		{
 			return; // a second signal
 		}
 		pending = signal;
-		if (held != 0)
+		if (holds != 0)
 		{
 			errno = before;
 			return; // ~SignalsHeld() handles it
@@ -440,7 +440,7 @@ void removeTemporaryFiles()
 
 SignalsHeld::SignalsHeld()
 {
-	for (int count = held; count == kEnding || !held.compare_exchange_weak(count, count + 1); count = held)
+	for (int count = holds; count == kEnding || !holds.compare_exchange_weak(count, count + 1); count = holds)
 	{
 		waitIfEnding();
 	}
@@ -448,8 +448,8 @@ SignalsHeld::SignalsHeld()
 
 SignalsHeld::~SignalsHeld()
 {
-	held -= 1;
-	const int signal = held == 0 ? pending.exchange(0) : 0;
+	holds -= 1;
+	const int signal = holds == 0 ? pending.exchange(0) : 0;
 	if (signal != 0)
 	{
 		std::raise(signal);

@@ -290,8 +290,8 @@ const CLI::App& parsedVerb(const CLI::App& app)
 
 std::vector<std::string> commandWords(const CLI::App& verb)
 {
-	std::vector<std::string> words;
-	for (const CLI::App* app = &verb; app->get_parent() != nullptr; app = app->get_parent())
+	std::vector<std::string> words{verb.get_name()}; // the library parses verbs by themselves, which then have no parent
+	for (const CLI::App* app = verb.get_parent(); app != nullptr && app->get_parent() != nullptr; app = app->get_parent())
 	{
 		words.insert(words.begin(), app->get_name());
 	}

@@ -161,18 +161,22 @@ class _Options:
             _library.check(_lib.nook_options_progress(self.handle.value, self._callback, None))
         made = ctypes.c_void_p()
         answer = []
+        done = threading.Event()  # after Ctrl-C in join(), Python 3.11 takes a running thread for one that ended
 
         def call():
-            status = function(*arguments, self.handle.value, ctypes.byref(made))
-            answer.append((status, _lib.nook_error().decode()))
+            try:
+                status = function(*arguments, self.handle.value, ctypes.byref(made))
+                answer.append((status, _lib.nook_error().decode()))
+            finally:
+                done.set()
 
         if main:
             thread = threading.Thread(target=call, daemon=True)
             thread.start()
             interrupted = None
-            while thread.is_alive():
+            while not done.is_set():
                 try:
-                    thread.join(0.1)
+                    done.wait(0.1)
                 except BaseException as interrupt:
                     self.cancelled = True
                     interrupted = interrupt

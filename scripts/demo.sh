@@ -29,9 +29,9 @@ cmake --preset release
 cmake --build --preset release --target nook
 nook=build/release/tools/nook
 run pattern --domain disk --count 9 --symmetric \
-	-o out/disk_009.json -o out/disk_009.h -o out/disk_009.glsl -o out/disk_009.hlsl -o out/disk_009.csv -o out/disk_009.png
+	-o out/disk_009.json -o out/disk_009.h -o out/disk_009.glsl -o out/disk_009.hlsl -o out/disk_009.csv -o out/disk_009.svg
 run pattern --domain ball --count 33 -o out/ball_033.json -o out/ball_033.h -o out/ball_033.glsl -o out/ball_033.svg
-run tile --pattern out/disk_009.json --size 4 -o out/disk_009_tile.json -o out/disk_009_tile.exr -o out/disk_009_tile.png -o out/disk_009_tile.glsl
+run tile --pattern out/disk_009.json --size 4 -o out/disk_009_tile.json -o out/disk_009_tile.exr -o out/disk_009_tile.svg -o out/disk_009_tile.glsl
 run info out/disk_009.json
 run report noise --max-count 8 -o out/noise.html --json out/noise.json
 run report error builtin:suburb --quick --methods vo-line,slices,alchemy,gtao,aov,rays -o out/error.html --json out/error.json

@@ -22,6 +22,13 @@ page choose_a_method picked/tune.html
 page farm ref.exr
 page which_asset view.png
 
+# The demo's commands on patterns; its set-up, reports and levels take minutes.
+checks=$((checks + 1))
+mkdir -p "$folder/demo/out"
+sed -e ':join' -e '/\\$/{N;s/\\\n//;b join' -e '}' "$source/scripts/demo.sh" | sed -n 's/^run \(pattern\|tile\|info\) /"$nook" \1 /p' >"$folder/demo/commands"
+[ "$(wc -l <"$folder/demo/commands")" -ge 4 ] || problem "demo.sh: found $(wc -l <"$folder/demo/commands") commands on patterns, expected four or more"
+(cd "$folder/demo" && nook=$nook sh -eu commands) >"$folder/log" 2>&1 || problem "demo.sh: $(tail -n 1 "$folder/log")"
+
 bytes()
 {
 	wc -c <"$folder/$1"

@@ -274,6 +274,24 @@ TEST_CASE("error report: bytes come back from base64", "[report]")
 	CHECK_FALSE(bytesOfBase64("a=cd"));
 }
 
+TEST_CASE("error report: a file with one view twice is refused", "[report]")
+{
+	ErrorReport report;
+	report.context.threads = 1;
+	report.rays = 1;
+	report.levels.resize(1);
+	report.levels[0].views.resize(2);
+	for (ErrorView& view : report.levels[0].views)
+	{
+		view.camera = "main";
+		view.width_px = 1;
+		view.height_px = 1;
+		view.picture = {0};
+	}
+	CHECK_THROWS_WITH(errorReportFrom(errorReportJson(report), "report.json"),
+					  Catch::Contains("levels[0].views[1].camera: found 'main' twice, expected each once"));
+}
+
 TEST_CASE("error report: an interrupted run goes on, and measures nothing twice", "[report]")
 {
 	const TemporaryFolder folder;

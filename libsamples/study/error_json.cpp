@@ -9,6 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 namespace nook
 {
 
@@ -188,6 +190,16 @@ ErrorPoint pointFrom(const JsonValue& value, std::size_t pixels)
 	return point;
 }
 
+// Adds an item under a name that no earlier item has: items of two reports are compared by their names.
+template <class Item> void addOnce(std::vector<Item>& items, Item item, std::string Item::*name, const JsonValue& where)
+{
+	if (std::any_of(items.begin(), items.end(), [&](const Item& other) { return other.*name == item.*name; }))
+	{
+		where.fail("'" + item.*name + "' twice", "each once");
+	}
+	items.push_back(std::move(item));
+}
+
 ErrorView viewFrom(const JsonValue& value)
 {
 	ErrorView view;
@@ -206,7 +218,7 @@ ErrorView viewFrom(const JsonValue& value)
 	const JsonValue points = value.at("points");
 	for (std::size_t i = 0; i < points.arraySize(); ++i)
 	{
-		view.points.push_back(pointFrom(points.at(i), pixels));
+		addOnce(view.points, pointFrom(points.at(i), pixels), &ErrorPoint::name, points.at(i).at("name"));
 	}
 	if (value.has("screen_space_limit") && !value.at("screen_space_limit").value->is_null())
 	{
@@ -239,7 +251,7 @@ ErrorLevel levelFrom(const JsonValue& value)
 	const JsonValue views = value.at("views");
 	for (std::size_t i = 0; i < views.arraySize(); ++i)
 	{
-		level.views.push_back(viewFrom(views.at(i)));
+		addOnce(level.views, viewFrom(views.at(i)), &ErrorView::camera, views.at(i).at("camera"));
 	}
 	return level;
 }
@@ -283,7 +295,7 @@ ErrorReport errorReportFrom(const std::string& text, const std::string& path)
 	const JsonValue levels = root.at("levels");
 	for (std::size_t i = 0; i < levels.arraySize(); ++i)
 	{
-		report.levels.push_back(levelFrom(levels.at(i)));
+		addOnce(report.levels, levelFrom(levels.at(i)), &ErrorLevel::name, levels.at(i).at("name"));
 	}
 	return report;
 }

@@ -62,19 +62,13 @@ ivec2 nookInside(ivec2 pixel)
 	return ivec2(clamp(pixel.x, nook.first.x, nook.last.x), clamp(pixel.y, nook.first.y, nook.last.y));
 }
 
-// The pixel at `offset` (x to the right, y up, in the unit of `scale`) from the centre of a pixel; it may lie outside the
-// picture.
-ivec2 nookBeside(ivec2 pixel, vec2 offset, vec2 scale)
-{
-	float x = float(pixel.x) + 0.5f + offset.x * scale.x;
-	float y = float(pixel.y) + 0.5f - offset.y * scale.y;
-	return ivec2(int(floor(x)), int(floor(y)));
-}
-
-// Returns nookBeside, moved to the nearest pixel that holds depth.
+// The pixel at `offset` (x to the right, y up, in the unit of `scale`) from the centre of a pixel, moved to the nearest pixel that
+// holds depth. Clamped before it becomes an int: close to the camera a radius may span more pixels than an int can count.
 ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 {
-	return nookInside(nookBeside(pixel, offset, scale));
+	float x = floor(float(pixel.x) + 0.5f + offset.x * scale.x);
+	float y = floor(float(pixel.y) + 0.5f - offset.y * scale.y);
+	return ivec2(int(clamp(x, float(nook.first.x), float(nook.last.x))), int(clamp(y, float(nook.first.y), float(nook.last.y))));
 }
 
 // The tangent plane of a pixel for nookPlaneRise, with the clip-space w of the pixel. x, y: how far the line of sight one pixel to

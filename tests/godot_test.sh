@@ -12,6 +12,7 @@ for tool in godot3 xvfb-run python3 idiff oiiotool; do
 		{ echo "skipped: found no $tool, expected Debian's packages godot3 (scripts/setup.sh godot), xvfb, python3 and openimageio-tools"; exit 77; }
 done
 cp -r "$source/examples/godot" "$folder/the project" && cd "$folder/the project" || exit 1
+cp -r "$source/examples/godot4" .
 step "emit.sh" env "PATH=$(dirname "$nook"):$PATH" ./emit.sh || finish
 # A scene that holds the example, and writes its pictures.
 cat >save.gd <<'GD'
@@ -63,6 +64,12 @@ pictured "in OpenGL" --device gl
 # The window shows the level no brighter than its visibility, the same way up.
 checks=$((checks + 1))
 oiiotool frame.png --ch R v.exr --sub --printstats | awk '/Stats Max/ { exit !($3 < 0.003) }' || problem "frame.png: found pixels brighter than their visibility"
+# Godot 4 has not been tried; its shaders compile.
+step "Godot 4: emit.sh" env "PATH=$(dirname "$nook"):$PATH" ./godot4/emit.sh
+for shader in godot4/made/pass0 godot4/made/pass1 godot4/product; do
+	sed '1d' $shader.glsl >shader.comp
+	command -v glslangValidator >/dev/null && step "Godot 4: $shader" glslangValidator -V shader.comp -o shader.spv
+done
 # Checks that the test itself can fail.
 before=$failures
 pictured "another radius" --max-pixels 8 >missed

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: godot_test.sh PROGRAM SOURCE. Draws examples/godot with Godot 3 and compares the module's picture with that of nook shade for
 # the depths that Godot drew: equal within 1/255 on 99.8 % of the pixels. The others lie around pixels where two neighbours fit the
-# normal from depth equally well. Exit code 77: no Godot 3, Xvfb, Python or oiiotool.
+# normal from depth equally well. Compiles the shaders of examples/godot4, which has never run. Exit code 77: no Godot 3, Xvfb, Python or
+# oiiotool.
 set -u
 nook=$(realpath "$1")
 source=$(realpath "$2")

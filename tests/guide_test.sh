@@ -60,5 +60,5 @@ fi
 # Not run here: platforms.md (targets_test.sh, debian_test.sh), three.md (npm_ao_test.sh), python.md (python_test.py), engines.md
 # (ogre_test.sh, godot_test.sh).
 checks=$((checks + 1))
-[ "$(find "$source/docs/guide" -name '*.md' | wc -l)" -eq 8 ] || problem "docs/guide: found another number of pages, expected each here"
+[ "$(find "$source/docs/guide" -name '*.md' | wc -l)" -eq 9 ] || problem "docs/guide: found another number of pages, expected each here"
 finish

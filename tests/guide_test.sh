@@ -57,7 +57,8 @@ if [ $failures -eq 0 ]; then
 	stated farm 'level, bytes' "$(as 0 1e6 "$(bytes farm/m.glb)")"
 	stated farm 'bytes a pixel' "$(as 1 57600 "$(bytes farm/m.exr)")"
 fi
-# Not run here: platforms.md (targets_test.sh, debian_test.sh), three.md (npm_ao_test.sh), python.md (python_test.py).
+# Not run here: platforms.md (targets_test.sh, debian_test.sh), three.md (npm_ao_test.sh), python.md (python_test.py), engines.md
+# (ogre_test.sh, godot_test.sh).
 checks=$((checks + 1))
-[ "$(find "$source/docs/guide" -name '*.md' | wc -l)" -eq 8 ] || problem "docs/guide: found another number of pages, expected each here"
+[ "$(find "$source/docs/guide" -name '*.md' | wc -l)" -eq 9 ] || problem "docs/guide: found another number of pages, expected each here"
 finish

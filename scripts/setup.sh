@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs missing packages for building and testing nook on Debian 12. Quick if nothing is missing.
-# Usage: setup.sh [aarch64] [windows] [wasm] [debian] [targets] [farm] [library]. The first three add cross compilers and emulators for ARM64,
-# Windows and the browser, `debian` adds packaging tools, `targets` all four; `farm` adds the engines that scripts/farm.sh starts,
-# `library` the tools for libnook's tests and wheel.
+# Usage: setup.sh [aarch64] [windows] [wasm] [debian] [targets] [farm] [library] [blender]. The first three add cross compilers and
+# emulators for ARM64, Windows and the browser, `debian` adds packaging tools, `targets` all four; `farm` adds the engines that
+# scripts/farm.sh starts, `library` the tools for libnook's tests and wheel, `blender` Blender for the test of its add-on.
 set -eu
 
 packages="g++ clang llvm libclang-rt-14-dev cmake ninja-build make ccache git
@@ -25,9 +25,10 @@ for target in "$@"; do
 	wasm) packages="$packages emscripten node-typescript" ;;
 	debian) packages="$packages lintian dpkg-dev fakeroot" ;;
 	library) packages="$packages python3-numpy python3-matplotlib patchelf mono-mcs mono-runtime" ;;
+	blender) packages="$packages blender" ;;
 	farm) packages="$packages slurm-wlm munge snakemake procps" ;;
 	*)
-		echo "setup.sh: found '$target', expected aarch64, windows, wasm, debian, targets, farm, library or nothing" >&2
+		echo "setup.sh: found '$target', expected aarch64, windows, wasm, debian, targets, farm, library, blender or nothing" >&2
 		exit 1
 		;;
 	esac

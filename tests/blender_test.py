@@ -10,7 +10,7 @@ PROGRAM, SOURCE, FOLDER = (os.path.abspath(word) for word in sys.argv[sys.argv.i
 
 
 def install():
-    """As a user installs it: copied to the add-ons' folder, which BLENDER_USER_SCRIPTS names, then enabled."""
+    """Installs the add-on as a user does: copies it to the folder that BLENDER_USER_SCRIPTS names, and enables it."""
     bpy.ops.preferences.addon_install(filepath=os.path.join(SOURCE, "integrations/blender/nook_bake.py"))
     bpy.ops.preferences.addon_enable(module="nook_bake")
     bpy.context.preferences.addons["nook_bake"].preferences.program = PROGRAM
@@ -18,7 +18,7 @@ def install():
 
 
 def scene():
-    """A cube on a plane, a monkey, turned and mirrored, and a ball at two places with one mesh."""
+    """Makes a cube on a plane, a monkey, turned and mirrored, and a ball at two places with one mesh."""
     for kind in (bpy.data.objects, bpy.data.meshes, bpy.data.collections):
         bpy.data.batch_remove(list(kind))
     bpy.ops.mesh.primitive_plane_add(size=8)
@@ -100,15 +100,16 @@ class Watched:
 
 
 def direct(file, radius=1.0, rays=64):
-    """The program's values of a file, in its order."""
+    """Returns the program's values for a file, in the file's order."""
     out = os.path.join(FOLDER, "direct.csv")
-    subprocess.run([PROGRAM, "bake", file, "--radius", str(radius), "--rays", str(rays), "-o", out], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([PROGRAM, "bake", file, "--radius", str(radius), "--rays", str(rays), "-o", out], check=True,
+                   stdout=subprocess.DEVNULL)
     with open(out) as rows:
         return np.array([row["visibility"] for row in csv.DictReader(rows)], np.float32)
 
 
 def exported(file):
-    """_VISIBILITY of a binary glTF file, in the order of nodes and primitives; Blender 3.4 adds a second _ to the name."""
+    """Reads _VISIBILITY of a binary glTF file in the order of nodes and primitives; Blender 3.4 adds a second _ to the name."""
     with open(file, "rb") as data:
         data = data.read()
     size = struct.unpack("<I", data[12:16])[0]
@@ -119,7 +120,8 @@ def exported(file):
             attributes = primitive["attributes"]
             accessor = document["accessors"][attributes["__VISIBILITY" if "__VISIBILITY" in attributes else "_VISIBILITY"]]
             view = document["bufferViews"][accessor["bufferView"]]
-            result.append(np.frombuffer(binary, np.float32, accessor["count"], view.get("byteOffset", 0) + accessor.get("byteOffset", 0)))
+            at = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+            result.append(np.frombuffer(binary, np.float32, accessor["count"], at))
     return np.concatenate(result)
 
 
@@ -139,7 +141,7 @@ def test_values(watched):
 
 
 def test_exported(watched):
-    """Blender's own exporter places the same meshes: nook's values for its file differ by noise only."""
+    """Bakes the file of Blender's own exporter, which places the same meshes: the values differ by noise only."""
     file = os.path.join(FOLDER, "exported.glb")
     watched.bake("Cube", "Plane", "Suzanne", rays=1024, occluders="SELECTED")
     bpy.ops.export_scene.gltf(filepath=file, use_selection=True, export_attributes=True)
@@ -153,7 +155,8 @@ def test_targets(watched):
     expected = values("Cube")
     watched.bake("Cube", "Plane", target="COLOR")
     for channel in range(3):
-        check(np.array_equal(values("Cube", "Visibility", channel), expected), "found other greys than the float attribute's values")
+        found = values("Cube", "Visibility", channel)
+        check(np.array_equal(found, expected), "found other greys than the float attribute's values")
     check((values("Cube", "Visibility", 3) == 1).all(), "found an alpha, expected 1")
     cube = bpy.data.objects["Cube"].data
     paint = cube.color_attributes.new("Paint", "FLOAT_COLOR", "POINT")
@@ -163,8 +166,8 @@ def test_targets(watched):
     watched.bake("Cube", "Plane", target="ALPHA")
     check(np.array_equal(values("Cube", "Paint", 1), np.full(8, 0.5, np.float32)), "found other colours, expected them kept")
     check(values("Cube", "Paint", 3).min() < 0.9, "found an alpha of 1, expected visibility")
-    direct_values = direct(os.path.join(FOLDER, "level.glb"))
-    check(np.array_equal(values("Cube", "Paint", 3), direct_values[:8]), "found other alphas than the program's values")
+    alphas = direct(os.path.join(FOLDER, "level.glb"))
+    check(np.array_equal(values("Cube", "Paint", 3), alphas[:8]), "found other alphas than the program's values")
     cube.color_attributes.remove(cube.color_attributes["Paint"])
     cube.attributes.remove(cube.attributes["_VISIBILITY"])
     cube.attributes.new("_VISIBILITY", "INT", "FACE")
@@ -199,7 +202,8 @@ def test_occluders(watched):
 
 def test_shared_meshes(watched):
     watched.bake("Sphere", "Open", "Plane")
-    check(len(watched.notes) == 1 and "Sphere: has 2 users, which all get the mean of the 2 selected" in watched.notes[0], f"found {watched.notes}")
+    expected = "Sphere: has 2 users, which all get the mean of the 2 selected"
+    check(len(watched.notes) == 1 and expected in watched.notes[0], f"found {watched.notes}, expected {expected}")
     both = values("Sphere")
     rows = direct(os.path.join(FOLDER, "level.glb"))
     count, plane = len(both), len(values("Plane"))
@@ -301,7 +305,7 @@ def without_window():
 
 
 def window_steps(module):
-    """A bake while Blender stays usable, undo, and Cancel. Each yield returns to Blender's main loop."""
+    """Bakes while Blender stays usable, undoes it, and cancels another bake. Each yield returns to Blender's main loop."""
     scene()
     bpy.ops.ed.undo_push(message="scene")
     settings(rays=16384)

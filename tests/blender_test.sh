@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: blender_test.sh PROGRAM SOURCE. The add-on integrations/blender in Blender: its values, targets, occluders and refusals
-# without a window, then its modal operator in a window where xvfb-run can make one. Exit code 77: no Blender (scripts/setup.sh blender).
+# without a window, then its modal operator in a window where xvfb-run can make one. Exit code 77: no Blender (scripts/setup.sh
+# blender).
 set -u
 nook=$(realpath "$1")
 source=$(realpath "$2")
@@ -16,8 +17,8 @@ blended()
 	checks=$((checks + 1))
 	name=$1
 	shift
-	timeout 600 "$@" --factory-startup --python-exit-code 1 --python "$source/tests/blender_test.py" -- "$nook" "$source" "$folder/work" \
-		>"$folder/log" 2>&1 || problem "$name: $(tail -n 12 "$folder/log")"
+	timeout 600 "$@" --factory-startup --python-exit-code 1 --python "$source/tests/blender_test.py" -- \
+		"$nook" "$source" "$folder/work" >"$folder/log" 2>&1 || problem "$name: $(tail -n 12 "$folder/log")"
 	grep -e ' checks in ' -e '^difference' "$folder/log"
 }
 blended "without a window" blender -b

@@ -21,6 +21,7 @@ page level darkened.png
 page choose_a_method picked/tune.html
 page farm ref.exr
 page which_asset view.png
+page darker_creases alpha.glb
 
 # The demo's commands on patterns; its set-up, reports and levels take minutes.
 checks=$((checks + 1))
@@ -59,5 +60,5 @@ if [ $failures -eq 0 ]; then
 fi
 # Not run here: platforms.md (targets_test.sh, debian_test.sh), three.md (npm_ao_test.sh), python.md (python_test.py).
 checks=$((checks + 1))
-[ "$(find "$source/docs/guide" -name '*.md' | wc -l)" -eq 8 ] || problem "docs/guide: found another number of pages, expected each here"
+[ "$(find "$source/docs/guide" -name '*.md' | wc -l)" -eq 9 ] || problem "docs/guide: found another number of pages, expected each here"
 finish

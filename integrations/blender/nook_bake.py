@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender add-on: bakes ambient visibility of the selected objects into an attribute of their meshes, by the program nook.
+"""A Blender add-on that bakes ambient visibility of the selected objects into an attribute of their meshes with the program nook.
 
-It writes the geometry to a temporary file, runs `nook bake`, and reads one value per vertex or face corner. It writes no other file.
+It writes the geometry to a temporary file, runs `nook bake`, and reads one value per vertex or face corner. It writes no other
+file. docs/guide/darker_creases.md describes it for users.
 """
 
 import json
@@ -35,14 +36,14 @@ class Refused(Exception):
 
 
 def program_path(context):
-    """The program of the preferences, or the one on PATH; None if there is none."""
+    """Returns the program named in the preferences, or the one on PATH; None if there is none."""
     addon = context.preferences.addons.get(__name__)
     given = bpy.path.abspath(addon.preferences.program) if addon else ""
     return shutil.which(given or "nook")
 
 
 def column(collection, name, width, dtype):
-    """One property of all items of a collection, as rows of an array."""
+    """Returns one property of all items of a collection as rows of an array."""
     values = np.empty(len(collection) * width, dtype)
     collection.foreach_get(name, values)
     return values.reshape(-1, width) if width > 1 else values
@@ -56,12 +57,12 @@ def corner_normals(mesh):
 
 
 def topology(mesh):
-    """What has to stay equal so that values of one mesh fit the other: the vertices of all face corners, and the faces' sizes."""
+    """Returns the vertices of all face corners and the faces' sizes. Values of one mesh fit any mesh for which these are equal."""
     return column(mesh.loops, "vertex_index", 1, np.int32).tobytes(), column(mesh.polygons, "loop_total", 1, np.int32).tobytes()
 
 
 def geometry(mesh, domain):
-    """Positions, normals and triangles, with one vertex per vertex of the mesh (POINT) or per face corner (CORNER).
+    """Returns positions, normals and triangles, with one vertex per vertex of the mesh (POINT) or per face corner (CORNER).
 
     Corners with equal normals at one place share a value, because nook fits them together; hard edges stay sharp.
     """
@@ -84,14 +85,15 @@ class Level:
     def accessor(self, array, kind, component, **more):
         self.json["bufferViews"].append({"buffer": 0, "byteOffset": len(self.binary), "byteLength": array.nbytes})
         self.binary += array.tobytes()
-        self.json["accessors"].append({"bufferView": len(self.json["bufferViews"]) - 1, "componentType": component, "count": array.size // kind[1],
-                                       "type": kind[0], **more})
+        self.json["accessors"].append({"bufferView": len(self.json["bufferViews"]) - 1, "componentType": component,
+                                       "count": array.size // kind[1], "type": kind[0], **more})
         return len(self.json["accessors"]) - 1
 
     def mesh(self, name, positions, normals, triangles):
         if not np.isfinite(positions).all():
             raise Refused(f"{name}: found a vertex that is not finite, expected numbers")
-        attributes = {"POSITION": self.accessor(positions, ("VEC3", 3), 5126, min=positions.min(0).tolist(), max=positions.max(0).tolist()),
+        box = {"min": positions.min(0).tolist(), "max": positions.max(0).tolist()}
+        attributes = {"POSITION": self.accessor(positions, ("VEC3", 3), 5126, **box),
                       "NORMAL": self.accessor(normals, ("VEC3", 3), 5126)}
         indices = self.accessor(triangles.astype(np.uint32), ("SCALAR", 1), 5125)
         self.json["meshes"].append({"primitives": [{"attributes": attributes, "indices": indices}]})
@@ -115,7 +117,7 @@ class Level:
 
 
 def target_of(mesh, target, name):
-    """The existing attribute that gets the values, or None: it will be made. Refuses one of another type or domain."""
+    """Returns the existing attribute that gets the values, or None if it has to be made. Refuses one of another type or domain."""
     if target == "ALPHA" and mesh.color_attributes.active_color:
         return mesh.color_attributes.active_color
     attribute = mesh.attributes.get(FLOAT_NAME if target == "FLOAT" else name)
@@ -155,9 +157,8 @@ class Job:
     """
 
     def __init__(self, context, settings):
-        self.notes = []    # one line each
-        self.stage = ""
-        self.done = 0.0
+        self.notes = []  # warnings, one line each
+        self.stage, self.done = "", 0.0
         self.receivers = []  # (mesh's name, its topology, number of values)
         self.target, self.name = settings.target, settings.name.strip()
         if not self.name and self.target != "FLOAT":
@@ -171,8 +172,8 @@ class Job:
             level.write(self.path("scene.glb"))
             with open(self.path("errors"), "wb") as errors:
                 self.process = subprocess.Popen(
-                    [program, "bake", "scene.glb", "--radius", f"{settings.radius:.7g}", "--rays", str(settings.rays), "-o", "values.npy",
-                     "--progress", "progress"],
+                    [program, "bake", "scene.glb", "--radius", f"{settings.radius:.7g}", "--rays", str(settings.rays),
+                     "-o", "values.npy", "--progress", "progress"],
                     cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors)
         except OSError as error:
             shutil.rmtree(self.folder, ignore_errors=True)
@@ -182,7 +183,7 @@ class Job:
         return os.path.join(self.folder, name)
 
     def level_of(self, context, selected_only):
-        """The selected meshes first, in a known order, then all else that occludes."""
+        """Adds the selected meshes in the order of self.receivers, then everything else that occludes."""
         depsgraph = context.evaluated_depsgraph_get()
         level = Level()
         chosen = set(context.selected_objects)
@@ -240,7 +241,8 @@ class Job:
             source.to_mesh_clear()
             if fits:
                 return True
-            self.notes.append(f"{item.name}: modifiers change its faces, so it is baked without them; apply them for a bake with them")
+            self.notes.append(f"{item.name}: modifiers change its faces, so it is baked without them; "
+                              "apply them for a bake with them")
         raise Refused(f"{item.name}: found a mesh that changes while it is read, expected object mode")
 
     def running(self):
@@ -444,12 +446,14 @@ class NookSettings(bpy.types.PropertyGroup):
     rays: IntProperty(name="Rays", default=256, min=1, max=16384, description="Rays per value: more give less noise")
     occluders: EnumProperty(name="Occluders", items=[
         ("SELECTED", "Selected", "Only selected objects darken"),
-        ("VISIBLE", "Visible", "All objects that the viewport and renders show darken; only selected ones get values")], default="VISIBLE")
+        ("VISIBLE", "Visible", "All objects that the viewport and renders show darken; only selected ones get values")],
+        default="VISIBLE")
     target: EnumProperty(name="Target", items=[
         ("COLOR", "Color", "A colour attribute: visibility as grey"),
         ("ALPHA", "Color Alpha", "The alpha of the active colour attribute; a new white one if there is none"),
         ("FLOAT", FLOAT_NAME, f"The float attribute {FLOAT_NAME}, for shaders of your own")])
-    name: StringProperty(name="Attribute", default="Visibility", description="Name of the colour attribute, which is made or replaced")
+    name: StringProperty(name="Attribute", default="Visibility",
+                         description="Name of the colour attribute, which is made or replaced")
 
 
 CLASSES = (NookPreferences, NookSettings, NOOK_OT_bake, NOOK_OT_cancel, NOOK_PT_panel)

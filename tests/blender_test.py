@@ -336,11 +336,19 @@ def window_steps(module):
     yield
     check(job.process.poll() is not None and not os.path.exists(job.folder), "found the program or its files after Cancel")
     check("_VISIBILITY" not in bpy.data.objects["Suzanne"].data.attributes, "found values after Cancel")
+    bpy.data.objects["Suzanne"].location.x += 1
+    bpy.ops.ed.undo_push(message="moved")
+    bpy.ops.nook.bake("INVOKE_DEFAULT")
+    bpy.ops.ed.undo() # before the bake can end
+    while module.running_job is not None:
+        yield
+    yield
+    check(values("Suzanne").min() < 0.9, "found no values of a bake during which the user undid a step")
+    settings(rays=16384)
+    choose("Suzanne", "Plane", "Sphere", "Cube")
     bpy.ops.nook.bake("INVOKE_DEFAULT")
     job = module.running_job
-    yield
-    bpy.ops.ed.undo() # while it runs
-    while module.running_job is not None and not job.stage:
+    while not job.stage:
         yield
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     yield

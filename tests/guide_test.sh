@@ -21,6 +21,7 @@ page level darkened.png
 page choose_a_method picked/tune.html
 page farm ref.exr
 page which_asset view.png
+page darker_creases alpha.glb
 
 # The demo's commands on patterns; its set-up, reports and levels take minutes.
 checks=$((checks + 1))
@@ -60,5 +61,5 @@ fi
 # Not run here: platforms.md (targets_test.sh, debian_test.sh), three.md (npm_ao_test.sh), python.md (python_test.py), engines.md
 # (ogre_test.sh, godot_test.sh).
 checks=$((checks + 1))
-[ "$(find "$source/docs/guide" -name '*.md' | wc -l)" -eq 9 ] || problem "docs/guide: found another number of pages, expected each here"
+[ "$(find "$source/docs/guide" -name '*.md' | wc -l)" -eq 10 ] || problem "docs/guide: found another number of pages, expected each here"
 finish

@@ -241,6 +241,49 @@ TEST_CASE("build: detail is chosen by errors, and bytes follow the surface, not 
 	CHECK(buildVolumes(floorAndBox(), settings, {2, {}}).detail->detail == 0.0);
 }
 
+TEST_CASE("build: a ground that is open is simplified, and a curtain that is seen from both sides is not", "[volume_build]")
+{
+	VolumeSettings settings;
+	settings.distance_m = 1.0;
+	settings.detail_more = 0.05;
+	for (const bool curtain : {false, true})
+	{
+		// A height field of 20 m × 20 m with waves of 3 m and ripples of 0.3 m; the curtain stands upright on a floor.
+		constexpr int kSteps = 100;
+		Level level = emptyLevel();
+		const auto at = [&](int x, int z)
+		{
+			const double u = 0.2 * x;
+			const double v = 0.2 * z;
+			const double height = 0.3 * std::sin(2.0 * u) * std::cos(1.7 * v) + 0.003 * std::sin(21.0 * u + 17.0 * v);
+			return curtain ? glm::dvec3(u - 10.0, v, height) : glm::dvec3(u - 10.0, height, 10.0 - v);
+		};
+		for (int x = 0; x < kSteps; ++x)
+		{
+			for (int z = 0; z < kSteps; ++z)
+			{
+				const auto first = static_cast<uint32_t>(level.positions.size());
+				for (const glm::dvec3& corner : {at(x, z), at(x + 1, z), at(x + 1, z + 1), at(x, z + 1)})
+				{
+					addVertex(level, corner);
+				}
+				addTriangle(level, first, first + 1, first + 2);
+				addTriangle(level, first, first + 2, first + 3);
+			}
+		}
+		if (curtain)
+		{
+			addBox(level, {-20.0, -1.0, -20.0}, {20.0, -0.01, 20.0});
+		}
+		const BuiltVolumes built = buildVolumes(level, settings, {2, {}});
+		const DetailTrial& whole = built.detail->trials.at(0);
+		CAPTURE(curtain, built.detail->detail, whole.polygons, built.set.occluders.polygons.size());
+		CHECK((built.detail->detail == 0.0) == curtain);
+		CHECK((2 * built.set.occluders.polygons.size() < whole.polygons) == !curtain);
+		CHECK(buildVolumes(level, settings, {1, {}}).set.occluders.corners == built.set.occluders.corners);
+	}
+}
+
 TEST_CASE("build: what simplification sank below the surface is not inside", "[volume_build]")
 {
 	VolumeSettings settings;

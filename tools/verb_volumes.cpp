@@ -124,8 +124,8 @@ std::vector<OptionRow> occluderRows(OccluderSettings& occluders, VolumeSettings&
 		 "2, or twice, four times … that where a quarter more polygons would not do): smaller ones fall off sideways, which is "
 		 "nearer to what rays give"},
 		{"--detail", takesParsed("SHARE", take_detail),
-		 "Simplifies one-sided surfaces first, moving them by about this share at most of the distance, below 1; auto: as far as "
-		 "errors at sampled points grow by a twentieth at most, auto:SHARE: by that share (default: not)"}};
+		 "Simplifies surfaces that darken on one side only, moving them by about this share at most of the distance, below 1; "
+		 "auto: as far as errors at sampled points grow by a twentieth at most, auto:SHARE: by that share (default: not)"}};
 }
 
 std::vector<OptionRow> dropRows(DropSettings& drop, bool& no_drop)

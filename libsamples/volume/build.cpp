@@ -57,9 +57,14 @@ bool dropsAnything(const DropSettings& drop)
 	return drop.no_receiver || drop.sides || drop.inside || drop.hidden || drop.below > 0.0;
 }
 
+bool simplifies(const VolumeSettings& settings)
+{
+	return settings.detail_more || settings.occluders.detail > 0.0;
+}
+
 bool needsTracer(const VolumeSettings& settings)
 {
-	return dropsAnything(settings.drop) || settings.detail_more || settings.trim || settings.compensate || settings.verify;
+	return dropsAnything(settings.drop) || simplifies(settings) || settings.trim || settings.compensate || settings.verify;
 }
 
 void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& built)
@@ -238,6 +243,12 @@ void findOccluders(BuiltVolumes& built, const Level& level, const Tracer* tracer
 			checkMemory(level, settings, pieces, "polygons that an extent cuts to", built);
 		}
 	};
+	if (simplifies(settings))
+	{
+		runOnce(
+			"backs", [&] { occluding.one_sided = idleBacks(*tracer, settings.distance_m, withoutUnits(run)); },
+			[&](Archive& archive) { archive(occluding.one_sided); }, run);
+	}
 	if (settings.detail_more)
 	{
 		chooseDetailOf(built, level, *tracer, settings, occluding, run);

@@ -5,6 +5,7 @@
 #include "core/math.h"
 #include "core/parallel.h"
 #include "scene/camera_choice.h"
+#include "scene/topology.h"
 #include "volume/drop.h"
 #include "volume/evaluate.h"
 #include "volume/sight.h"
@@ -485,6 +486,52 @@ ReceiverSides receiverSides(const Tracer& tracer, const SideSettings& settings, 
 		leaveOutOfSight(tracer, settings, sides, run);
 	}
 	return sides;
+}
+
+std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, const RunSettings& run)
+{
+	constexpr std::size_t kBlock = 256;
+	constexpr double kNeeded = 0.005; // of a piece's area
+	const Level& level = tracer.level();
+	const std::size_t count = level.triangles.size();
+	const ReceiverSides sides = receiverSides(tracer, {}, run);
+	std::vector<double> areas(count);
+	std::vector<double> needed(count, 0.0);
+	ProgressCounter progress(run.progress, "backs", (count + kBlock - 1) / kBlock);
+	parallelFor((count + kBlock - 1) / kBlock, run.threads,
+				[&](std::size_t block)
+				{
+					for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i)
+					{
+						const std::array<glm::dvec3, 3> corners = cornersOf(level, i);
+						const glm::dvec3 across = acrossOf(corners);
+						areas[i] = glm::length(across);
+						const bool used = sides.there[i] != 0 && ((sides.seen[i] & kBackSeen) != 0 ||
+																  seesReceiver(tracer, sides, corners, -across / areas[i],
+																			   distance_m, distance_m, static_cast<uint32_t>(i)));
+						needed[i] = used ? areas[i] : 0.0;
+					}
+					progress.finishOne();
+				});
+	const std::vector<uint32_t> first = weldPositions(level.positions, run.threads);
+	Groups pieces(level.positions.size());
+	for (const glm::uvec3& t : level.triangles)
+	{
+		pieces.join(first[t.x], first[t.y]);
+		pieces.join(first[t.x], first[t.z]);
+	}
+	std::vector<glm::dvec2> sums(level.positions.size(), glm::dvec2(0.0)); // by piece: the area, and what is needed of it
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		sums[pieces.rootOf(first[level.triangles[i].x])] += glm::dvec2(areas[i], needed[i]);
+	}
+	std::vector<uint8_t> idle(count);
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		const glm::dvec2 sum = sums[pieces.rootOf(first[level.triangles[i].x])];
+		idle[i] = level.material_list[level.materials[i]].alpha_mode == AlphaMode::opaque && sum.y <= kNeeded * sum.x ? 1 : 0;
+	}
+	return idle;
 }
 
 std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distance_m, const ReceiverSettings& settings,

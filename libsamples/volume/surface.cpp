@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volume/surface.h"
 
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "scene/topology.h"
@@ -500,26 +501,20 @@ void measureHoles(const Soup& soup, const Finder& finder, const Surface& surface
 	addHoles(edges, soup.level->positions, pieces.holes);
 }
 
-// Triangles that belonged to a closed surface before their cell was cut out; empty if none did.
-std::vector<uint8_t> closedBefore(const Soup& soup)
+// Triangles known to be oriented, whatever their piece looks like: those of settings.one_sided, and those that belonged to a closed
+// surface before their cell was cut out.
+std::vector<uint8_t> knownOriented(const Soup& soup, const OccluderSettings& settings)
 {
-	const std::span<const Mesh> meshes = soup.level->meshes;
-	if (std::none_of(meshes.begin(), meshes.end(), [](const Mesh& mesh) { return mesh.closed; }))
+	std::vector<uint8_t> of_level = settings.detail > 0.0 ? settings.one_sided : std::vector<uint8_t>{};
+	of_level.resize(soup.level->triangles.size(), 0);
+	for (const Mesh& mesh : soup.level->meshes)
 	{
-		return {};
+		if (mesh.closed)
+		{
+			std::fill_n(of_level.begin() + static_cast<std::ptrdiff_t>(mesh.first_triangle), mesh.triangle_count, uint8_t{1});
+		}
 	}
-	std::vector<uint8_t> of_level(soup.level->triangles.size(), 0);
-	for (const Mesh& mesh : meshes)
-	{
-		std::fill_n(of_level.begin() + static_cast<std::ptrdiff_t>(mesh.first_triangle), mesh.triangle_count,
-					mesh.closed ? uint8_t{1} : uint8_t{0});
-	}
-	std::vector<uint8_t> closed(soup.triangles.size());
-	for (std::size_t i = 0; i < closed.size(); ++i)
-	{
-		closed[i] = of_level[soup.sources.empty() ? i : soup.sources[i]];
-	}
-	return closed;
+	return soup.sources.empty() ? of_level : mapped(soup.sources, [&](uint32_t source) { return of_level[source]; });
 }
 
 // A piece of surface is oriented if it is opaque, closed except for small holes, and its fronts are outside. If they are inside, it
@@ -530,7 +525,7 @@ void findSides(const Soup& soup, const OccluderSettings& settings, const Finder&
 	PieceSums pieces(count);
 	joinPieces(soup, finder, surface, pieces);
 	measureHoles(soup, finder, surface, pieces);
-	const std::vector<uint8_t> closed_before = closedBefore(soup);
+	const std::vector<uint8_t> known = knownOriented(soup, settings);
 	for (std::size_t i = 0; i < count; ++i)
 	{
 		const uint32_t piece = pieces.groups.rootOf(static_cast<uint32_t>(i));
@@ -542,9 +537,8 @@ void findSides(const Soup& soup, const OccluderSettings& settings, const Finder&
 			counts.closed += closed ? 1U : 0U;
 			counts.sealed += sealed && !closed ? 1U : 0U;
 		}
-		const bool oriented = settings.sides == Sides::oriented ||
-							  (settings.sides == Sides::automatic && kindOf(soup, i) == 0 &&
-							   ((sealed && pieces.volumes[piece] > 0.0) || (!closed_before.empty() && closed_before[i] != 0)));
+		const bool oriented = settings.sides == Sides::oriented || (settings.sides == Sides::automatic && kindOf(soup, i) == 0 &&
+																	((sealed && pieces.volumes[piece] > 0.0) || known[i] != 0));
 		surface.two_sided[i] |= oriented ? uint8_t{0} : uint8_t{1};
 	}
 }

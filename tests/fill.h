@@ -6,7 +6,6 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "scene/gbuffer.h"
-#include "volume/prism.h"
 #include "volume/volumes.h"
 
 #include <glm/geometric.hpp>

@@ -7,7 +7,6 @@
 #include "scene/gbuffer.h"
 #include "shade/aov.h"
 #include "volume/packed.h"
-#include "volume/prism.h"
 #include "volume/volumes.h"
 
 #include <glm/geometric.hpp>

@@ -3,7 +3,6 @@
 #include "pattern/cells.h"
 #include "pattern/energy.h"
 #include "pattern/energy_kernels.h"
-#include "pattern/line_pairs.h"
 #include "pattern/methods.h"
 
 #include <catch2/catch.hpp>

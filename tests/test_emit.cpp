@@ -4,10 +4,10 @@
 #include "core/image.h"
 #include "core/text.h"
 #include "emit_samples.h"
+#include "format/arrays.h"
 #include "format/pattern_file.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
-#include "format/tile_texture.h"
 #include "image/drawing.h"
 #include "temporary_folder.h"
 

@@ -3,7 +3,7 @@
 #include "cube_gltf.h"
 
 #include "core/image_codec.h"
-#include "format/ktx2.h"
+#include "format/arrays.h"
 
 #include <catch2/catch.hpp>
 

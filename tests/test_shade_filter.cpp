@@ -7,7 +7,7 @@
 #include "methods/passes.h"
 #include "pattern/recipe.h"
 #include "pattern/tile.h"
-#include "shade/cpu_passes.h"
+#include "shade/run_passes.h"
 #include "shade/shade.h"
 
 #include <catch2/catch.hpp>

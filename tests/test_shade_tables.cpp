@@ -6,8 +6,8 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "shade/cpu_passes.h"
 #include "shade/gl_context.h"
+#include "shade/run_passes.h"
 #include "shade/shade.h"
 
 #include <catch2/catch.hpp>

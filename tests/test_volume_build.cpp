@@ -10,8 +10,8 @@
 #include "scene/builtin.h"
 #include "volume/build.h"
 #include "volume/evaluate.h"
-#include "volume/prism.h"
 #include "volume/trim.h"
+#include "volume/volumes.h"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>

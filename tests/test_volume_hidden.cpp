@@ -9,10 +9,10 @@
 #include "volume/build.h"
 #include "volume/evaluate.h"
 #include "volume/occluders.h"
-#include "volume/prism.h"
 #include "volume/receivers.h"
 #include "volume/region.h"
 #include "volume/sight.h"
+#include "volume/volumes.h"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>

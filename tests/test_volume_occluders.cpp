@@ -7,8 +7,8 @@
 #include "scene/builtin.h"
 #include "volume/evaluate.h"
 #include "volume/occluders.h"
-#include "volume/prism.h"
 #include "volume/surface.h"
+#include "volume/volumes.h"
 
 #include <catch2/catch.hpp>
 

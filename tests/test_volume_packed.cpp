@@ -11,7 +11,6 @@
 #include "core/text.h"
 #include "scene/load.h"
 #include "volume/packed.h"
-#include "volume/prism.h"
 #include "volume/volume_glb.h"
 #include "volume/volumes.h"
 

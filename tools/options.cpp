@@ -482,6 +482,16 @@ void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endi
 	checkNames(outputs, inputs);
 }
 
+void checkAnyOutputs(const Outputs& outputs, std::span<const std::string_view> endings, const std::vector<std::string>& inputs)
+{
+	if (outputs.files.empty() && outputs.json.empty())
+	{
+		checkNames(outputs, inputs);
+		return;
+	}
+	checkOutputs(outputs, endings, inputs);
+}
+
 void checkNames(const Outputs& outputs, const std::vector<std::string>& inputs)
 {
 	checkRead(outputs, inputs);

@@ -234,7 +234,8 @@ std::optional<WorkShare> shareOf(const std::string& text);
 // not take it, and names that a depfile cannot hold where there is to be one.
 void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endings, const std::vector<std::string>& inputs = {});
 
-// Names and folders alone, for verbs that need no output.
+// Likewise for verbs that need no output; and the check of names and folders alone.
+void checkAnyOutputs(const Outputs& outputs, std::span<const std::string_view> endings, const std::vector<std::string>& inputs);
 void checkNames(const Outputs& outputs, const std::vector<std::string>& inputs);
 
 // Whether a verb may print what it has to say: none of the outputs is standard output.

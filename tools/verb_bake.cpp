@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook bake: a level → the same file with visibility at its vertices or in a texture, or the visibility of probes.
 #include "call.h"
-#include "feature_options.h"
 #include "scene_options.h"
 
 #include "bake/bake.h"

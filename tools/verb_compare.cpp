@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "core/words.h"
 #include "image/drawing.h"
 #include "image/visibility_image.h"
 #include "scene/gbuffer.h"
@@ -91,14 +92,7 @@ void check(const CompareOptions& options)
 	}
 	std::vector<std::string> inputs{options.test, options.reference, options.mask};
 	std::erase(inputs, "");
-	if (!outputs.files.empty() || !outputs.json.empty())
-	{
-		checkOutputs(outputs, kPictureFormats, inputs);
-	}
-	else
-	{
-		checkNames(outputs, inputs);
-	}
+	checkAnyOutputs(outputs, kPictureFormats, inputs);
 }
 
 // Which pixels count; empty: all.
@@ -111,10 +105,8 @@ template <class Picture> std::vector<uint8_t> readMask(const std::string& path, 
 	SurfaceMask mask = readSurfaceMask(path);
 	if (mask.width_px != reference.width_px || mask.height_px != reference.height_px)
 	{
-		throw Error(ExitCode::invalid_input, path + ": size: found " + std::to_string(mask.width_px) + "x" +
-												 std::to_string(mask.height_px) + " pixels, expected " +
-												 std::to_string(reference.width_px) + "x" + std::to_string(reference.height_px) +
-												 " as " + reference.path);
+		refuseInput(path + ": size", std::to_string(mask.width_px) + "x" + std::to_string(mask.height_px) + " pixels",
+					std::to_string(reference.width_px) + "x" + std::to_string(reference.height_px) + " as " + reference.path);
 	}
 	if (std::find(mask.surface.begin(), mask.surface.end(), uint8_t{1}) == mask.surface.end())
 	{
@@ -187,8 +179,7 @@ Verdict judged(const CompareOptions& options, const Comparison& comparison)
 	const std::optional<double> error = errorBy(comparison, options.metric);
 	if (!error)
 	{
-		throw Error(ExitCode::invalid_input, options.test + ": size: found no window of 11x11 pixels that counts, expected one for "
-															"--metric ssim");
+		refuseInput(options.test + ": size", "no window of 11x11 pixels that counts", "one for --metric ssim");
 	}
 	return {*error > *options.max_error, *error};
 }

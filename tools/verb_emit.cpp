@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook emit: methods and their patterns → one GLSL module, and the C++ header or JavaScript of its uniform block.
-#include "feature_options.h"
+#include "scene_options.h"
 
 #include "core/decimal.h"
 #include "core/lists.h"

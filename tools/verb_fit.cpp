@@ -10,7 +10,6 @@
 #include "core/work_units.h"
 #include "methods/method_table.h"
 #include "methods/recipes.h"
-#include "study/command_words.h"
 #include "study/fit.h"
 #include "version.h"
 

@@ -5,7 +5,6 @@
 #include "core/error.h"
 #include "core/system.h"
 #include "core/text.h"
-#include "format/input.h"
 #include "format/tile_json.h"
 #include "methods/method_table.h"
 #include "methods/recipes.h"

@@ -488,15 +488,9 @@ void tellStatus(const PlanOptions& options)
 	summary.whole("not_done", plan.jobs.size() - count);
 	std::string text = plan.title + ": " + jobsText(plan.jobs.size()) + ", " + std::to_string(count) + " done, " +
 					   std::to_string(plan.jobs.size() - count) + " not done\n";
-	std::vector<std::string> names;
-	for (std::size_t i = 0; i < done.size(); ++i)
-	{
-		if (done[i] == 0)
-		{
-			names.push_back(plan.jobs[i].name);
-			text += "  " + names.back() + "\n";
-		}
-	}
+	const std::vector<std::string> names = mapped(indicesWhere(done.size(), [&](std::size_t i) { return done[i] == 0; }),
+												  [&](std::size_t i) { return plan.jobs[i].name; });
+	text += joinedText(names, "", [](const std::string& name) { return "  " + name + "\n"; });
 	summary.texts("left", names);
 	writeOutputs(options.outputs, {}, summary.json(), {}, text);
 }

@@ -81,14 +81,12 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 		 {"--baseline", takesText(options.baseline, "FILE.json"),
 		  "An earlier report: exit code 7 where an error has grown (times do not count)"}});
 	addRun(app, options.outputs, true);
-	for (const CLI::Option* const option : app.get_options())
-	{
-		if (const std::string name = option->get_name(); name != "LEVEL" && name != "--cache" && !name.starts_with("--help"))
-		{
-			options.of_measuring.push_back(option);
-		}
-	}
 	options.app = &app;
+	const auto measures = [](const CLI::Option* option)
+	{
+		return option->get_name() != "LEVEL" && option->get_name() != "--cache" && !option->get_name().starts_with("--help");
+	};
+	options.of_measuring = itemsWhere(options.app->get_options(), measures);
 }
 
 void checkJoin(const ErrorOptions& options)
@@ -201,16 +199,9 @@ void measure(const ErrorOptions& options, VerbProgress& progress)
 	checkRead(options.outputs, read);
 	writePages(options, {&report, 1}, options.outputs.json.empty() ? "" : errorReportJson(report), read);
 
-	std::string failures;
-	std::size_t failed = 0;
-	for (const ErrorLevel& level : report.levels)
-	{
-		if (!level.failure.empty())
-		{
-			failures += (failures.empty() ? "" : "; ") + level.failure;
-			failed += 1;
-		}
-	}
+	const std::vector<std::string> failures =
+		itemsWhere(mapped(report.levels, [](const ErrorLevel& level) { return level.failure; }),
+				   [](const std::string& failure) { return !failure.empty(); });
 	std::string grown;
 	if (baseline)
 	{
@@ -220,21 +211,22 @@ void measure(const ErrorOptions& options, VerbProgress& progress)
 			std::fprintf(stderr, "nook: warning: baseline: %s: found nothing of it in this run\n", oneLine(missing).c_str());
 		}
 		grown = regressionText(result);
-		if (failed == 0 && result.compared == 0)
+		if (failures.empty() && result.compared == 0)
 		{
 			throw Error(ExitCode::invalid_input,
 						"--baseline: found nothing in " + options.baseline +
 							" that was measured here, expected levels, cameras and candidates of this run");
 		}
-		if (failed == 0 && !grown.empty())
+		if (failures.empty() && !grown.empty())
 		{
 			throw Error(ExitCode::difference, grown);
 		}
 	}
-	if (failed > 0)
+	if (!failures.empty())
 	{
-		throw Error(ExitCode::runtime, "report: found " + std::to_string(failed) + " of " + std::to_string(report.levels.size()) +
-										   " levels that failed, expected none: " + failures + (grown.empty() ? "" : "; " + grown));
+		throw Error(ExitCode::runtime,
+					"report: found " + std::to_string(failures.size()) + " of " + std::to_string(report.levels.size()) +
+						" levels that failed, expected none: " + joinedText(failures, "; ") + (grown.empty() ? "" : "; " + grown));
 	}
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook shade: a G-buffer → visibility by a screen-space method, by occlusion volumes or by both, on the CPU or through OpenGL.
 #include "call.h"
-#include "feature_options.h"
 #include "scene_options.h"
 
 #include "core/decimal.h"

@@ -4,7 +4,6 @@
 #include "options.h"
 
 #include "core/system.h"
-#include "format/input.h"
 #include "format/pattern_file.h"
 #include "format/tile_json.h"
 #include "pattern/tile.h"

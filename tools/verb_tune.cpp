@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook tune: levels and a budget, or a bound of error → which method to take, and its files.
-#include "feature_options.h"
 #include "options.h"
 #include "scene_options.h"
 
 #include "core/error.h"
 #include "core/file.h"
 #include "core/lists.h"
+#include "core/text.h"
 #include "emit/module.h"
 #include "methods/method_table.h"
-#include "study/command_words.h"
 #include "study/tune.h"
 #include "version.h"
 
@@ -111,14 +110,7 @@ void checkFiles(const TuneOptions& options, const std::vector<std::string>& file
 	static constexpr std::array<std::string_view, 5> kEndings{".glsl", ".h", ".json", ".glb", ".html"};
 	Outputs outputs = options.outputs;
 	outputs.files = files;
-	if (!files.empty() || !options.outputs.json.empty())
-	{
-		checkOutputs(outputs, kEndings, options.levels);
-	}
-	else
-	{
-		checkNames(outputs, options.levels);
-	}
+	checkAnyOutputs(outputs, kEndings, options.levels);
 	for (std::size_t i = 0; report != nullptr && i < report->levels.size(); ++i)
 	{
 		checkRead(outputs, report->levels[i].files);
@@ -168,21 +160,12 @@ std::vector<std::string> searchedMethods(const TuneOptions& options)
 			refuseValue("--methods", method, "some of " + searchedNames());
 		}
 	}
-	for (const MethodRow& row : methodTable())
+	if (!options.methods.empty() || draws_volumes)
 	{
-		if (options.methods.empty() && !draws_volumes && row.emitted && row.kind == MethodKind::screen)
-		{
-			methods.emplace_back(row.name);
-		}
+		return methods;
 	}
-	if (options.methods.empty() && !draws_volumes)
-	{
-		for (const AssetKind* const kind : kindsBesideMethods())
-		{
-			methods.emplace_back(kind->name);
-		}
-	}
-	return methods;
+	return partsOf(methodNames([](const MethodRow& row) { return row.emitted && row.kind == MethodKind::screen; }, ",") +
+				   joinedText(kindsBesideMethods(), "", [](const AssetKind* kind) { return "," + std::string(kind->name); }));
 }
 
 void check(TuneOptions& options)

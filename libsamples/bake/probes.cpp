@@ -10,7 +10,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/words.h"
-#include "format/ktx2.h"
+#include "format/arrays.h"
 #include "scene/reference.h"
 
 #include <glm/common.hpp>

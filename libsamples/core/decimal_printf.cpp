@@ -2,6 +2,7 @@
 // Implementation with printf and strtod, for libraries that round correctly but lack floating-point <charconv> (libc++ before 14
 // with musl). Slower.
 #include "core/decimal.h"
+#include "core/lists.h"
 
 #include <array>
 #include <cctype>
@@ -74,11 +75,8 @@ template <class Float> std::string withoutExponent(const std::string& form, Floa
 {
 	const std::size_t e = form.find('e');
 	const int exponent = std::atoi(form.c_str() + e + 1);
-	std::string digits;
-	for (const char c : form.substr(0, e))
-	{
-		digits += c >= '0' && c <= '9' ? std::string(1, c) : "";
-	}
+	std::string digits =
+		joinedText(form.substr(0, e), "", [](const char c) { return c >= '0' && c <= '9' ? std::string(1, c) : ""; });
 	const std::string sign = std::signbit(value) ? "-" : "";
 	const auto count = static_cast<int>(digits.size());
 	if (exponent < 0)

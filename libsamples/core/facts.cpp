@@ -22,11 +22,7 @@ std::string numberJson(double value)
 // In one line.
 std::string itemJson(std::string_view fields)
 {
-	std::string line;
-	for (const char c : fields)
-	{
-		line += c == '\n' ? "" : std::string(1, c == '\t' ? ' ' : c);
-	}
+	std::string line = joinedText(fields, "", [](const char c) { return c == '\n' ? "" : std::string(1, c == '\t' ? ' ' : c); });
 	return "{" + line + " }";
 }
 

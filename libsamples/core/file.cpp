@@ -568,10 +568,7 @@ std::string unescaped(const std::string& uri)
 std::string depfileText(std::span<const std::string> targets, std::span<const std::string> sources)
 {
 	std::string text = joinedText(targets, " ", [](const std::string& target) { return escaped(target, Side::target); }) + ":";
-	for (const std::string& source : sources)
-	{
-		text += " \\\n  " + escaped(source, Side::source);
-	}
+	text += joinedText(sources, "", [](const std::string& source) { return " \\\n  " + escaped(source, Side::source); });
 	return text + "\n";
 }
 

@@ -2,6 +2,8 @@
 // Lists, texts and sums made of the items of a list, in their order.
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -32,6 +34,26 @@ template <class Make> auto listOf(std::size_t count, const Make& make)
 		made.push_back(make(i));
 	}
 	return made;
+}
+
+// The items and the indices 0 to count - 1 that isWanted accepts.
+template <class List, class Wanted> auto itemsWhere(const List& list, const Wanted& isWanted)
+{
+	std::vector<std::decay_t<decltype(*std::begin(list))>> wanted;
+	std::copy_if(std::begin(list), std::end(list), std::back_inserter(wanted), isWanted);
+	return wanted;
+}
+template <class Wanted> std::vector<std::size_t> indicesWhere(std::size_t count, const Wanted& isWanted)
+{
+	std::vector<std::size_t> wanted;
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		if (isWanted(i))
+		{
+			wanted.push_back(i);
+		}
+	}
+	return wanted;
 }
 
 // The texts of all items with `between` between them.

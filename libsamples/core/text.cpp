@@ -3,10 +3,12 @@
 
 #include "core/decimal.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cctype>
 
 namespace nook
 {
@@ -128,6 +130,20 @@ std::string xmlText(std::string_view text)
 	return escaped;
 }
 
+std::string shellQuoted(std::string_view text)
+{
+	return "'" + joinedText(text, "", [](char c) { return c == '\'' ? "'\\''" : std::string(1, c); }) + "'";
+}
+
+std::string shellWord(const std::string& text)
+{
+	const auto isPlain = [](char c)
+	{
+		return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("_-./:+=,").find(c) != std::string_view::npos;
+	};
+	return !text.empty() && std::all_of(text.begin(), text.end(), isPlain) ? text : shellQuoted(text);
+}
+
 bool isIdentifier(std::string_view name)
 {
 	const auto isLetter = [](char c)
@@ -144,12 +160,7 @@ bool isIdentifier(std::string_view name)
 
 std::string commentBlock(const Notes& notes, std::string_view prefix)
 {
-	std::string block;
-	for (const Note& note : notes)
-	{
-		block += std::string(prefix) + note.key + ": " + note.value + "\n";
-	}
-	return block;
+	return joinedText(notes, "", [&](const Note& note) { return std::string(prefix) + note.key + ": " + note.value + "\n"; });
 }
 
 } // namespace nook

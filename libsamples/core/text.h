@@ -38,6 +38,10 @@ std::string jsonText(std::string_view text);
 // Escaped for XML text and attributes.
 std::string xmlText(std::string_view text);
 
+// One word of a shell: quoted, and quoted only where that is needed.
+std::string shellQuoted(std::string_view text);
+std::string shellWord(const std::string& text);
+
 // True for a valid identifier in C, GLSL and HLSL: letters, digits and single underscores, starting with a letter, not "gl_…".
 bool isIdentifier(std::string_view name);
 

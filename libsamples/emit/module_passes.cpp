@@ -1,13 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The passes of a module: their functions, their constants, and a description of what to draw.
+#include "core/base64.h"
 #include "core/decimal.h"
+#include "core/error.h"
+#include "core/json_text.h"
 #include "core/lists.h"
+#include "core/words.h"
+#include "emit/module.h"
 #include "emit/module_parts.h"
+#include "format/tile_json.h"
 #include "methods/block.h"
+#include "methods/method_table.h"
 #include "methods/passes.h"
+#include "pattern/cells.h"
 
 #include <algorithm>
+#include <cstring>
 #include <sstream>
+#include <variant>
+
+#include <nlohmann/json.hpp>
 
 namespace nook
 {
@@ -498,6 +510,210 @@ std::string introductionOf(const ModuleSettings& settings)
 		text += ".\n";
 	}
 	return text;
+}
+
+// The passes, pictures and uniform block of one picture as JSON, for programs that draw emitted modules.
+
+namespace
+{
+
+using PassesJson = nlohmann::ordered_json;
+
+constexpr std::array kPictureFormats{"scalar", "quad", "counts"};
+constexpr std::array kSlotNames{"nook_cells", "nook_packed", "nook_levels", "nook_tables", "nook_range"};
+
+std::string base64OfBytes(const void* values, std::size_t size)
+{
+	std::vector<uint8_t> bytes(size);
+	std::memcpy(bytes.data(), values, size);
+	return base64Of(bytes);
+}
+
+// Column = variant, row = sample, as modules read their tiles.
+PassesJson tileJson(const ShadeSamples& samples)
+{
+	const auto count = static_cast<std::size_t>(samples.count);
+	const std::size_t variants = samples.samples.size() / count;
+	const std::vector<glm::vec4> texels =
+		listOf(samples.samples.size(), [&](std::size_t i) { return samples.samples[i % variants * count + i / variants]; });
+	return {{"width", variants}, {"height", count}, {"texels", base64OfBytes(texels.data(), texels.size() * sizeof(glm::vec4))}};
+}
+
+PassesJson passJson(const ShadePass& pass)
+{
+	PassesJson reads = PassesJson::array();
+	for (const ShadeRead& read : pass.reads)
+	{
+		reads.push_back({kSlotNames[static_cast<std::size_t>(read.slot)], read.picture});
+	}
+	const glm::ivec4 numbers = modulePassOf(pass.block, pass.kernel.call);
+	return {{"name", pass.kernel.name},
+			{"call", moduleCallOf(pass)},
+			{"picture", pass.picture},
+			{"level", pass.level},
+			{"layer", pass.layer},
+			{"reads", std::move(reads)},
+			{"numbers", {numbers.x, numbers.y, numbers.z, numbers.w}}};
+}
+
+} // namespace
+
+std::string passesJson(const ShadeFrame& frame, const ShadeSamples& samples, const ShadeSettings& settings,
+					   std::string_view version)
+{
+	const ShadePlan plan = planOf(frame, samples, settings, false);
+	PassesJson members = PassesJson::object();
+	std::size_t end = 0;
+	for (const BlockMember& member : blockMembers())
+	{
+		members[member.name] = member.offset;
+		end = placeOf(member, end).end;
+	}
+	std::vector<uint8_t> bytes((end + 15) / 16 * 16);
+	const ShadeBlock block = blockOf(frame, samples, settings);
+	std::memcpy(bytes.data(), &block, end);
+	PassesJson pictures = PassesJson::array();
+	for (const PictureShape& shape : plan.pictures)
+	{
+		pictures.push_back({{"format", kPictureFormats[static_cast<std::size_t>(shape.format)]},
+							{"width", shape.width},
+							{"height", shape.height},
+							{"levels", shape.levels},
+							{"layers", shape.layers}});
+	}
+	PassesJson passes = mapped(plan.passes, [](const ShadePass& pass) { return passJson(pass); });
+	PassesJson json{{"schema", "nook.passes/1"}, {"version", version}, {"members", std::move(members)}, {"block", base64Of(bytes)}};
+	if (rowOf(settings.method).domain)
+	{
+		json["tile"] = tileJson(samples);
+	}
+	json["pictures"] = std::move(pictures);
+	json["passes"] = std::move(passes);
+	return jsonLine(json) + "\n";
+}
+
+namespace
+{
+
+// The first `count` samples. Throws Error (invalid_input) where there are fewer, or where they were not made for it.
+void shorten(PatternFile& file, std::size_t count, const std::string& path)
+{
+	Pattern& pattern = file.pattern;
+	if (count > pattern.count())
+	{
+		refuseInput(path + ": --counts", std::to_string(pattern.count()) + " samples", std::to_string(count) + " or more");
+	}
+	if (count == pattern.count())
+	{
+		return;
+	}
+	if (!file.recipe || file.recipe->order != Order::progressive)
+	{
+		refuseInput(path + ": recipe", "a pattern whose first samples are none", "one made with --order progressive");
+	}
+	pattern.points.resize(count);
+	pattern.powers.clear();
+	pattern.weights = exactCells(pattern.domain, pattern.points, {}).integrals;
+}
+
+// The first `count` samples of each variant of a tile. Their weights stay what they were made for, but for their sum.
+void shorten(const TileFile& file, std::size_t count, const std::string& path, std::vector<Pattern>& variants)
+{
+	if (count > variants.front().count())
+	{
+		refuseInput(path + ": --counts", std::to_string(variants.front().count()) + " samples", std::to_string(count) + " or more");
+	}
+	if (count < variants.front().count() && !(file.recipe && file.recipe->progressive))
+	{
+		throw Error(ExitCode::invalid_input, path + ": --counts: found a tile of " + std::to_string(variants.front().count()) +
+												 " samples, expected all of them, or one made with --progressive");
+	}
+	for (Pattern& variant : variants)
+	{
+		if (count == variant.count())
+		{
+			return;
+		}
+		variant.points.resize(count);
+		variant.weights.resize(count);
+		const double sum = sumOver(variant.weights);
+		if (!(sum > 0.0))
+		{
+			refuseInput(path + ": --counts", "a variant whose first " + std::to_string(count) + " samples have no weight", "some");
+		}
+		for (double& w : variant.weights)
+		{
+			w /= sum;
+		}
+	}
+}
+
+// Variants in a window: those of the tile, or of the method's own samples.
+std::size_t windowOf(const ModuleSettings& settings, const ModuleMethod& method)
+{
+	if (!method.variants.empty())
+	{
+		return method.variants.size() / static_cast<std::size_t>(layersOf(method));
+	}
+	ShadeSettings shade = method.shade.value_or(settings.shade);
+	shade.method = method.method;
+	const auto side = static_cast<std::size_t>(ownSamples(shade).size);
+	return side * side;
+}
+
+} // namespace
+
+std::string readSamples(const std::string& path, std::optional<std::size_t> count, const ShadeSettings& shade, ModuleMethod& method)
+{
+	std::variant<PatternFile, TileFile> input = readInput(path);
+	if (shade.bands.count > 1)
+	{
+		checkProgressive(input, path);
+	}
+	const Domain expected = domainOf(method.method);
+	const auto checkDomain = [&](Domain found)
+	{
+		if (found != expected)
+		{
+			throw Error(ExitCode::invalid_input, path + ": domain: found " + std::string(nameOf(found)) + ", expected " +
+													 std::string(nameOf(expected)) + " for " + std::string(nameOf(method.method)));
+		}
+	};
+	if (PatternFile* const file = std::get_if<PatternFile>(&input))
+	{
+		checkDomain(file->pattern.domain);
+		completeWeights(*file);
+		shorten(*file, count.value_or(file->pattern.count()), path);
+		method.variants = {file->pattern};
+		return file->command;
+	}
+	const TileFile& file = std::get<TileFile>(input);
+	checkDomain(file.tile.domain);
+	method.variants = file.tile.variants;
+	method.frames = file.tile.frames;
+	method.moves = file.tile.moves;
+	if (count)
+	{
+		shorten(file, *count, path, method.variants);
+	}
+	return file.command;
+}
+
+void checkWindows(const ModuleSettings& settings)
+{
+	if (settings.shade.filter != ShadeFilter::window)
+	{
+		return;
+	}
+	for (const ModuleMethod& method : settings.methods)
+	{
+		const std::size_t variants = windowOf(settings, method);
+		if (variants < 2 || variants != windowOf(settings, settings.methods.front()))
+		{
+			refuseInput("--filter window: " + std::string(nameOf(method.method)),
+						std::to_string(method.variants.size()) + " variants", "tiles of one size for all methods");
+		}
+	}
 }
 
 } // namespace nook

@@ -5,6 +5,7 @@
 // assignments, if, for, while and return; constants and arrays of them; one uniform block and push constants of scalars and
 // vectors; textures that texelFetch reads. Types must match as in OpenGL ES, without conversions. Everything else is refused.
 #include "core/error.h"
+#include "core/lists.h"
 #include "emit/module_parts.h"
 
 #include <algorithm>
@@ -310,10 +311,7 @@ private:
 		std::string beside;
 		for (std::size_t i = start; i < m_at; ++i)
 		{
-			for (const std::string& comment : m_tokens[i].above)
-			{
-				text += indent() + comment + "\n";
-			}
+			text += joinedText(m_tokens[i].above, "", [&](const std::string& comment) { return indent() + comment + "\n"; });
 			beside += m_tokens[i].beside;
 		}
 		text += indent() + code + beside + "\n";

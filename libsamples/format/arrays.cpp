@@ -2,11 +2,15 @@
 #include "format/arrays.h"
 
 #include "core/error.h"
+#include "core/image.h"
 #include "core/lists.h"
+#include "core/round.h"
 #include "core/text.h"
+#include "format/tile_json.h"
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace nook
 {
@@ -156,6 +160,240 @@ Source sourceOf(const PatternTile& tile, const TileQuality& quality, const EmitC
 	}
 	source.arrays.push_back(std::move(points));
 	return source;
+}
+
+namespace
+{
+
+void setTexel(TileTexture& texture, int x, int y, const Sample& sample)
+{
+	const std::size_t at =
+		4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(texture.width_px) + static_cast<std::size_t>(x));
+	std::copy(sample.begin(), sample.end(), texture.rgba.begin() + static_cast<std::ptrdiff_t>(at));
+}
+
+// 1 for channels within −1…1; for scales and weights, given by index, their greatest value.
+void setRange(TileTexture& texture, std::size_t channel)
+{
+	texture.range = {1.0f, 1.0f, 1.0f, 1.0f};
+	float greatest = 0.0f;
+	for (std::size_t i = channel; i < texture.rgba.size(); i += 4)
+	{
+		greatest = std::max(greatest, std::fabs(texture.rgba[i]));
+	}
+	texture.range[channel] = greatest > 0.0f ? greatest : 1.0f;
+}
+
+Notes textureNotes(const TileTexture& texture, const TileQuality& quality, const EmitContext& context)
+{
+	Notes notes = notesOf(context, measuresOf(quality));
+	notes.push_back({"Layout", texture.layout});
+	return notes;
+}
+
+// This work is based on: Khronos, "KTX File Format Specification", version 2.0, and "Khronos Data Format Specification", version
+// 1.3 (the basic descriptor block). All numbers are little-endian.
+
+constexpr std::string_view kIdentifier = "\xABKTX 20\xBB\r\n\x1A\n";
+constexpr uint64_t kIndexEnd = 80 + 24; // the header and the index of one level
+
+void add(std::string& bytes, uint64_t number, int width)
+{
+	for (int i = 0; i < width; ++i)
+	{
+		bytes += static_cast<char>((number >> (8 * i)) & 0xFFU);
+	}
+}
+
+void add32(std::string& bytes, uint64_t number)
+{
+	add(bytes, number, 4);
+}
+
+void pad(std::string& bytes, std::size_t alignment)
+{
+	bytes.resize((bytes.size() + alignment - 1) / alignment * alignment, '\0');
+}
+
+// Properties of a texel format.
+struct TexelFacts
+{
+	uint32_t format;    // VkFormat
+	uint32_t type_size; // bytes per value
+	uint32_t flags;     // channel flags: signed and float, or none
+	uint32_t least;     // stored value of −1 or 0
+	uint32_t most;      // stored value of 1
+};
+
+TexelFacts factsOf(Ktx2Texel texel)
+{
+	return texel == Ktx2Texel::rgba32_float ? TexelFacts{109, 4, 0xC0U, bitsAs<uint32_t>(-1.0f), bitsAs<uint32_t>(1.0f)}
+											: TexelFacts{37, 1, 0U, 0U, 255U};
+}
+
+// Data format, section 5: four channels that are not colours.
+std::string descriptor(const TexelFacts& facts)
+{
+	const uint32_t bits = 8 * facts.type_size;
+	std::string block;
+	add32(block, 0);                                 // vendor Khronos, the basic descriptor
+	add(block, 2, 2);                                // version 1.3
+	add(block, 24 + 4 * 16, 2);                      // size of this block in bytes
+	add32(block, 0x00010001);                        // RGBSDA, no primaries, linear, straight alpha
+	add32(block, 0);                                 // blocks of one texel
+	add(block, 4 * facts.type_size, 8);              // first plane; the other seven are empty
+	for (const uint32_t channel : {0U, 1U, 2U, 15U}) // red, green, blue, alpha
+	{
+		const uint32_t bit = channel == 15U ? 3 * bits : bits * channel;
+		add32(block, bit | ((bits - 1) << 16U) | ((facts.flags | channel) << 24U));
+		add32(block, 0); // sample position: the texel's corner
+		add32(block, facts.least);
+		add32(block, facts.most);
+	}
+	std::string bytes;
+	add32(bytes, 4 + block.size());
+	return bytes + block;
+}
+
+// KTX2, section 3.11: sorted by key, each entry prefixed with its length and aligned to four bytes.
+std::string keysAndValues(Notes notes)
+{
+	std::sort(notes.begin(), notes.end(), [](const Note& a, const Note& b) { return a.key < b.key; });
+	std::string bytes;
+	for (const Note& note : notes)
+	{
+		add32(bytes, note.key.size() + note.value.size() + 2);
+		bytes += note.key + '\0' + note.value + '\0';
+		pad(bytes, 4);
+	}
+	return bytes;
+}
+
+} // namespace
+
+TileTexture textureOf(const PatternTile& tile, bool layered)
+{
+	TileTexture texture;
+	const std::string size = std::to_string(tile.size);
+	const auto allocate = [&](int width_px, int height_px)
+	{
+		texture.width_px = width_px;
+		texture.height_px = height_px;
+		texture.layer_height_px = height_px;
+		texture.rgba.resize(4 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px));
+	};
+	if (!tile.transforms.empty())
+	{
+		allocate(tile.size, tile.size);
+		const std::vector<Sample> transforms = transformsOf(tile);
+		for (int i = 0; i < tile.size * tile.size; ++i)
+		{
+			setTexel(texture, i % tile.size, i / tile.size, transforms[static_cast<std::size_t>(i)]);
+		}
+		setRange(texture, tile.domain == Domain::ball ? 3 : 2);
+		texture.layout = "texel = (x mod " + size + ", y mod " + size + "); RGBA = " + transformColumnsOf(tile.domain);
+		return texture;
+	}
+	const int count = static_cast<int>(tile.variants.front().count());
+	const int variants = static_cast<int>(tile.variants.size());
+	const int layers = layered ? layersOf(tile) : 1;
+	allocate(variants / layers, count * layers);
+	texture.layer_height_px = count;
+	for (int v = 0; v < variants; ++v)
+	{
+		const std::vector<Sample> samples = samplesOf(tile.variants[static_cast<std::size_t>(v)]);
+		for (int i = 0; i < count; ++i)
+		{
+			setTexel(texture, v % texture.width_px, v / texture.width_px * count + i, samples[static_cast<std::size_t>(i)]);
+		}
+	}
+	setRange(texture, 3);
+	PatternTile one_layer; // to describe
+	one_layer.frames = layers > 1 ? 1 : tile.frames;
+	one_layer.moves = tile.moves;
+	std::string variant = variantText(one_layer, size);
+	for (std::size_t at = variant.find(" % "); at != std::string::npos; at = variant.find(" % "))
+	{
+		variant.replace(at, 3, " mod ");
+	}
+	texture.layout = "column = variant = " + variant + (layers > 1 ? ", layer = frame mod " + std::to_string(layers) : "") +
+					 ", row = sample; RGBA = " + columnsOf(tile.domain);
+	for (std::size_t f = 0; f < tile.moves.size(); ++f)
+	{
+		texture.layout += (f == 0 ? "; moves " : " ") + std::to_string(tile.moves[f].x) + "," + std::to_string(tile.moves[f].y);
+	}
+	return texture;
+}
+
+std::string tileExr(const PatternTile& tile, const TileQuality& quality, const EmitContext& context)
+{
+	const TileTexture texture = textureOf(tile);
+	return exrBytes(texture.width_px, texture.height_px, texture.rgba, textureNotes(texture, quality, context));
+}
+
+std::string tilePng(const PatternTile& tile, const TileQuality& quality, const EmitContext& context)
+{
+	const TileTexture texture = textureOf(tile);
+	std::vector<uint16_t> numbers(texture.rgba.size());
+	for (std::size_t i = 0; i < numbers.size(); ++i)
+	{
+		const double share = double{texture.rgba[i]} / double{texture.range[i % 4]};
+		numbers[i] = static_cast<uint16_t>(32768.0 + std::floor(32767.0 * std::clamp(share, -1.0, 1.0) + 0.5));
+	}
+	Notes notes = textureNotes(texture, quality, context);
+	const std::string ranges = joinedText(texture.range, ", ", [](float range) { return floatText(range); });
+	notes.push_back({"Encoding", "value = (v - 32768) / 32767 * range, v = 0 to 65535; range of RGBA = " + ranges});
+	return pngBytes(texture.width_px, texture.height_px, numbers, notes);
+}
+
+std::string tileKtx2(const PatternTile& tile, const TileQuality& quality, const EmitContext& context)
+{
+	const TileTexture texture = textureOf(tile, true);
+	const int layers = texture.height_px / texture.layer_height_px;
+	Ktx2Texture made;
+	made.width = static_cast<uint32_t>(texture.width_px);
+	made.height = static_cast<uint32_t>(texture.layer_height_px);
+	made.layers = static_cast<uint32_t>(layers > 1 ? layers : 0);
+	made.notes = notesOf(context, measuresOf(quality));
+	made.notes.push_back({"Layout", texture.layout});
+	made.notes.push_back({"KTXorientation", "rd"}); // rows from the top
+	made.notes.push_back({"KTXwriter", "nook " + context.version});
+	made.bytes.reserve(4 * texture.rgba.size());
+	for (const float value : texture.rgba)
+	{
+		const auto bits = bitsAs<uint32_t>(value);
+		for (int i = 0; i < 4; ++i)
+		{
+			made.bytes += static_cast<char>((bits >> (8 * i)) & 0xFFU);
+		}
+	}
+	return ktx2Bytes(made);
+}
+
+std::string ktx2Bytes(const Ktx2Texture& texture)
+{
+	const TexelFacts facts = factsOf(texture.texel);
+	const uint64_t texel_bytes = 4 * uint64_t{facts.type_size};
+	const std::string format = descriptor(facts);
+	const std::string words = keysAndValues(texture.notes);
+	std::string bytes(kIdentifier);
+	for (const uint64_t number :
+		 {uint64_t{facts.format}, uint64_t{facts.type_size}, uint64_t{texture.width}, uint64_t{texture.height},
+		  uint64_t{texture.depth}, uint64_t{texture.layers}, uint64_t{1}, uint64_t{1}, uint64_t{0}, kIndexEnd,
+		  uint64_t{format.size()}, kIndexEnd + format.size(), uint64_t{words.size()}})
+	{
+		add32(bytes, number); // one face, one level, no supercompression
+	}
+	add(bytes, 0, 8); // no supercompression data
+	add(bytes, 0, 8);
+	const uint64_t texels = (kIndexEnd + format.size() + words.size() + texel_bytes - 1) / texel_bytes * texel_bytes;
+	for (const uint64_t number : {texels, uint64_t{texture.bytes.size()}, uint64_t{texture.bytes.size()}})
+	{
+		add(bytes, number, 8);
+	}
+	bytes += format + words;
+	pad(bytes, static_cast<std::size_t>(texel_bytes));
+	return bytes + texture.bytes;
 }
 
 } // namespace nook

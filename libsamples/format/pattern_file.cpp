@@ -8,11 +8,8 @@
 #include "core/system.h"
 #include "core/text.h"
 #include "format/arrays.h"
-#include "format/input.h"
 #include "format/pattern_json.h"
-#include "format/source_text.h"
 #include "format/tile_json.h"
-#include "format/tile_texture.h"
 #include "image/drawing.h"
 #include "pattern/cells.h"
 

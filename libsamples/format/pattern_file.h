@@ -24,7 +24,7 @@ std::string_view formatOf(const std::string& path, std::span<const std::string_v
 std::string patternBytes(std::string_view format, const Pattern& pattern, const Recipe* recipe, const Quality& quality,
 						 const EmitContext& context);
 
-// Textures (.png, .exr, .ktx2): layout in tile_texture.h. .svg: a sheet of the variants. recipe may be null.
+// Textures (.png, .exr, .ktx2): layout in arrays.h. .svg: a sheet of the variants. recipe may be null.
 std::string tileBytes(std::string_view format, const PatternTile& tile, const TileRecipe* recipe, const TileQuality& quality,
 					  const EmitContext& context);
 

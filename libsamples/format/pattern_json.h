@@ -33,7 +33,7 @@ struct PatternFile
 // `path` is for messages only. Strict: unknown fields are rejected. Throws Error (invalid_input).
 PatternFile parsePatternJson(const std::string& text, const std::string& path);
 
-// Reads a pattern file: CSV (pattern_csv.h) if the path ends in .csv, else JSON. domain: expected domain, if known; a file that
+// Reads a pattern file: CSV if the path ends in .csv, else JSON. domain: expected domain, if known; a file that
 // contradicts it is an error.
 PatternFile readPattern(const std::string& path, std::optional<Domain> domain = std::nullopt);
 

@@ -10,7 +10,6 @@
 #include "core/text.h"
 #include "format/arrays.h"
 #include "format/json_fields.h"
-#include "format/source_text.h"
 
 #include <array>
 #include <cmath>
@@ -27,11 +26,7 @@ std::string filtersJson(const TileRecipe& recipe)
 	{
 		return {};
 	}
-	nlohmann::ordered_json filters = nlohmann::ordered_json::array();
-	for (const TileFilter& filter : recipe.filters)
-	{
-		filters.push_back(filterJson(filter));
-	}
+	nlohmann::ordered_json filters = mapped(recipe.filters, [](const TileFilter& filter) { return filterJson(filter); });
 	return ",\n\t\t\"filters\": " + jsonLine(filters) + ",\n\t\t\"robust\": " + (recipe.robust ? "true" : "false") +
 		   ",\n\t\t\"frames\": " + std::to_string(recipe.frames) + ",\n\t\t\"ema\": " + doubleText(recipe.ema) +
 		   ",\n\t\t\"moves\": " + (recipe.moves ? "true" : "false");
@@ -307,10 +302,8 @@ std::string tileCsv(const PatternTile& tile, const TileQuality& quality, const E
 	text += "variant," + std::string(columnsOf(tile.domain)) + "\n";
 	for (std::size_t i = 0; i < tile.variants.size(); ++i)
 	{
-		for (const Sample& sample : samplesOf(tile.variants[i]))
-		{
-			text += std::to_string(i) + "," + rowText(sample) + "\n";
-		}
+		text += joinedText(samplesOf(tile.variants[i]), "",
+						   [&](const Sample& sample) { return std::to_string(i) + "," + rowText(sample) + "\n"; });
 	}
 	return text;
 }

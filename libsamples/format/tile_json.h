@@ -10,11 +10,13 @@
 
 #include "core/json_reader.h"
 #include "format/notes.h"
+#include "format/pattern_json.h"
 #include "pattern/tile_filter.h"
-#include <vector>
 
 #include <optional>
 #include <string>
+#include <variant>
+#include <vector>
 
 namespace nook
 {
@@ -63,9 +65,18 @@ std::vector<TileFilter> filtersOf(const std::vector<std::string>& names, std::ve
 // The files among such names.
 std::vector<std::string> filterFiles(const std::vector<std::string>& names);
 
-// Writes a tile as a KTX2 file with one texture of 32-bit floats, laid out as in tile_texture.h. Frames with tiles of their own
+// Writes a tile as a KTX2 file with one texture of 32-bit floats, laid out as in arrays.h. Frames with tiles of their own
 // become array layers, so that a texture is no wider than size² texels.
 
 std::string tileKtx2(const PatternTile& tile, const TileQuality& quality, const EmitContext& context);
+
+// Reads a tile if the JSON's schema says so, else a pattern. Same errors as readPattern and readTile.
+std::variant<PatternFile, TileFile> readInput(const std::string& path, std::optional<Domain> domain = std::nullopt);
+
+// Computes missing weights as the integrals of the cells.
+void completeWeights(PatternFile& file);
+
+// Throws Error (invalid_input) unless prefixes of the file's samples are patterns themselves, as the bands of `nook shade` require.
+void checkProgressive(const std::variant<PatternFile, TileFile>& input, const std::string& path);
 
 } // namespace nook

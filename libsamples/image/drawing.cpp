@@ -3,6 +3,7 @@
 #include "image/drawing.h"
 
 #include "core/image.h"
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/words.h"
 
@@ -274,11 +275,7 @@ void paintText(Canvas& canvas, const Shape& shape, double scale)
 	const glm::dvec2 origin = shape.points[0] * scale - glm::dvec2(share * width * size, 0.0);
 	for (const Stroke& stroke : strokes)
 	{
-		std::vector<glm::dvec2> points;
-		for (const glm::dvec2& p : stroke)
-		{
-			points.push_back(origin + p * size);
-		}
+		std::vector<glm::dvec2> points = mapped(stroke, [&](const glm::dvec2& p) { return origin + p * size; });
 		paintLine(canvas, points, false, 0.085 * size, shape.fill);
 	}
 }
@@ -414,10 +411,7 @@ std::string svgText(const Drawing& drawing, const Notes& notes)
 					   "stroke-linecap=\"round\">\n<title>" +
 					   xmlText(drawing.title) + "</title>\n<desc>\n" + xmlText(commentBlock(notes, "")) + "</desc>\n";
 	text += "<rect width=\"" + width + "\" height=\"" + height + "\"" + paint("fill", drawing.background) + "/>\n";
-	for (const Shape& shape : drawing.shapes)
-	{
-		text += elementOf(shape);
-	}
+	text += joinedText(drawing.shapes, "", [](const Shape& shape) { return elementOf(shape); });
 	return text + "</svg>\n";
 }
 

@@ -4,7 +4,7 @@
 #include "core/lists.h"
 #include "core/math.h"
 #include "core/words.h"
-#include "pattern/filter_band.h"
+#include "image/compare.h"
 
 #include <glm/geometric.hpp>
 

@@ -2,6 +2,7 @@
 // Assembles a page as a single file.
 #pragma once
 
+#include "core/lists.h"
 #include "core/text.h"
 #include "page/assets.h"
 
@@ -16,12 +17,7 @@ namespace nook
 // Escapes what could end the script element that holds the data.
 inline std::string escapedJson(std::string_view json)
 {
-	std::string out;
-	for (const char c : json)
-	{
-		out += c == '<' ? "\\u003c" : std::string(1, c);
-	}
-	return out;
+	return joinedText(json, "", [](const char c) { return c == '<' ? "\\u003c" : std::string(1, c); });
 }
 
 struct PageSlot

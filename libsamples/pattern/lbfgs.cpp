@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: J. Nocedal, "Updating quasi-Newton matrices with limited storage", 1980 (the two-loop recursion).
-#include "pattern/lbfgs.h"
+#include "pattern/methods.h"
 
 #include <cmath>
 #include <deque>

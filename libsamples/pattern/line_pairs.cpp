@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Compiled with -fno-trapping-math (CMakeLists.txt), so that both sides of a condition may be evaluated and the loops vectorise.
-#include "pattern/line_pairs.h"
 
 #include "pattern/energy_kernels.h"
 

@@ -6,13 +6,78 @@
 #include "core/random.h"
 #include "pattern/cells.h"
 #include "pattern/energy.h"
-#include "pattern/layout.h"
 #include "pattern/recipe.h"
 
 #include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
 
 namespace nook
 {
+
+// The nearest valid position: disk z = 0, directions unit length, hemisphere lifted from (x, y); radii at most 1 − 1e-6 (sphere:
+// exactly 1).
+glm::dvec3 placeInDomain(Domain domain, const glm::dvec3& p);
+
+// Separates a pattern's free points from those that follow: a fixed centre first, then the free points, each followed by its
+// opposite if the pattern is symmetric.
+class Layout
+{
+public:
+	explicit Layout(const Recipe& recipe);
+
+	std::size_t freeCount() const
+	{
+		return m_free;
+	}
+
+	bool hasCentre() const
+	{
+		return m_centre;
+	}
+
+	bool symmetric() const
+	{
+		return m_symmetric;
+	}
+
+	Domain domain() const
+	{
+		return m_domain;
+	}
+
+	// Number of variables per free point: (x, y) or (x, y, z).
+	std::size_t dimension() const
+	{
+		return isPlanar(m_domain) ? 2 : 3;
+	}
+
+	std::vector<glm::dvec3> expand(std::span<const glm::dvec3> free) const;    // all points
+	std::vector<glm::dvec3> freePoints(std::span<const glm::dvec3> all) const; // its inverse
+
+	// Converts to an optimiser's variables (dimension × freeCount) and back. False if a point leaves the domain.
+	std::vector<double> variables(std::span<const glm::dvec3> all) const;
+	bool points(std::span<const double> variables, std::vector<glm::dvec3>& all) const;
+
+	// Converts the gradient by every point (in space) to the gradient by the variables.
+	void pullBack(std::span<const double> variables, std::span<const glm::dvec3> all, std::span<const glm::dvec3> point_gradient,
+				  std::span<double> gradient) const;
+
+	// Replaces values of opposite points with their mean.
+	void symmetrise(std::span<double> values) const;
+
+private:
+	std::size_t firstFree(std::size_t k) const
+	{
+		return (m_centre ? 1U : 0U) + (m_symmetric ? 2 * k : k);
+	}
+
+	Domain m_domain;
+	bool m_centre;
+	bool m_symmetric;
+	std::size_t m_free;
+};
 
 // Each step of a descent counts as one item; its end counts the remaining ones, since most descents stop early.
 class StartProgress
@@ -152,5 +217,26 @@ std::vector<glm::dvec3> haltonPoints(const Layout& layout);
 // Golden-angle spiral (Vogel 1979; on the sphere Swinbank and Purser 2006); in the ball the radii also follow a golden-ratio
 // sequence.
 std::vector<glm::dvec3> vogelPoints(const Layout& layout);
+
+struct LbfgsSettings
+{
+	int max_iterations = 200;
+	int memory = 12;                  // number of step pairs kept
+	double relative_decrease = 1e-10; // stop when ten iterations together lower the value by less than this fraction
+	std::function<void(std::span<const double> x)> seen{}; // called after each iteration; may be empty
+};
+
+// Progress items per descent: the iterations plus the start's value.
+inline std::size_t stepsOf(const LbfgsSettings& settings)
+{
+	return static_cast<std::size_t>(settings.max_iterations) + 1;
+}
+
+// Returns the value at x and writes the gradient (same size as x); infinity where x is invalid (the gradient is then ignored).
+using Objective = std::function<double(std::span<const double> x, std::span<double> gradient)>;
+
+// Limited-memory BFGS with a backtracking line search. Replaces x with the best point found and returns its value. The start must
+// be valid. Sums run in index order, so the result is the same everywhere.
+double minimise(const Objective& objective, std::vector<double>& x, const LbfgsSettings& settings = {});
 
 } // namespace nook

@@ -4,7 +4,6 @@
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/round.h"
-#include "pattern/lbfgs.h"
 #include "pattern/methods.h"
 #include "pattern/tile_parts.h"
 

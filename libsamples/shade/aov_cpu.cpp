@@ -7,7 +7,7 @@
 #include "methods/block.h"
 #include "methods/kernels.h"
 #include "methods/method_table.h"
-#include "shade/pass_times.h"
+#include "shade/run_passes.h"
 #include "volume/evaluate.h"
 
 #include <glm/geometric.hpp>

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: Morgan McGuire, Ambient Occlusion Volumes, 2010 (AOV), §5.
 #include "core/error.h"
+#include "core/lists.h"
 #include "methods/block.h"
 #include "methods/kernels.h"
 #include "shade/aov_gl_parts.h"
 #include "shade/gl_context.h"
-#include "shade/pass_times.h"
+#include "shade/run_passes.h"
 
 #include <epoxy/gl.h>
 #include <glm/gtc/type_ptr.hpp>
@@ -429,11 +430,7 @@ template <class Item> std::span<const std::byte> bytesOf(const std::vector<Item>
 GlVolumes::GlVolumes(const PackedVolumes& packed, const nook_volumes::Frame& frame, const AovGlOptions& options)
 	: m_packed(packed), m_frame(frame), m_options(options)
 {
-	std::vector<nook_volumes::SeenCluster> seen;
-	for (const nook_volumes::Cluster& cluster : packed.clusters)
-	{
-		seen.push_back(frame.seen(cluster));
-	}
+	const auto seen = mapped(packed.clusters, [&](const nook_volumes::Cluster& cluster) { return frame.seen(cluster); });
 	m_corners = std::make_unique<GlArray>(bytesOf(packed.corners), GL_RGBA16UI, 8);
 	m_polygons = std::make_unique<GlArray>(bytesOf(packed.polygons), GL_RG32UI, 8);
 	m_clusters = std::make_unique<GlArray>(bytesOf(seen), GL_RGBA32UI, 16);
@@ -544,11 +541,7 @@ void setTimes(Shaded& shaded, const std::vector<std::vector<PassTime>>& drawings
 {
 	for (std::size_t pass = 0; pass < drawings.front().size(); ++pass)
 	{
-		std::vector<double> seconds;
-		for (const std::vector<PassTime>& drawn : drawings)
-		{
-			seconds.push_back(drawn[pass].seconds);
-		}
+		const auto seconds = mapped(drawings, [&](const std::vector<PassTime>& drawn) { return drawn[pass].seconds; });
 		shaded.passes.push_back(passTimeOf(drawings.front()[pass].name, seconds));
 		shaded.seconds += shaded.passes.back().seconds;
 	}

@@ -4,6 +4,7 @@
 #include "bake/bake.h"
 #include "core/decimal.h"
 #include "core/error.h"
+#include "core/lists.h"
 #include "methods/method_table.h"
 #include "scene/gltf_edit.h"
 #include "volume/build.h"
@@ -136,11 +137,8 @@ const std::vector<int> kEveryPx{1, 3, 5}; // AOV §5.5: one pixel of n²
 
 std::vector<AssetCandidate> sumCandidates(GridSize size)
 {
-	std::vector<AssetCandidate> all;
-	for (const int n : upTo<int>(size, {1, 3}, kEveryPx, kEveryPx))
-	{
-		all.push_back(volumeCandidate(Origin::paper, VolumeRecipe::triangles, 0, n));
-	}
+	std::vector<AssetCandidate> all = mapped(upTo<int>(size, {1, 3}, kEveryPx, kEveryPx), [](const int n)
+											 { return volumeCandidate(Origin::paper, VolumeRecipe::triangles, 0, n); });
 	for (const int n : kEveryPx)
 	{
 		all.push_back(volumeCandidate(Origin::ours, VolumeRecipe::built, 0, n));
@@ -390,12 +388,7 @@ std::vector<const AssetKind*> kindsBesideMethods()
 
 std::string namesBesideMethods()
 {
-	std::string names;
-	for (const AssetKind* const kind : kindsBesideMethods())
-	{
-		names += ", " + std::string(kind->name);
-	}
-	return names;
+	return joinedText(kindsBesideMethods(), "", [](const AssetKind* const kind) { return ", " + std::string(kind->name); });
 }
 
 } // namespace nook

@@ -3,7 +3,8 @@
 
 #include "bake/bake.h"
 #include "core/error.h"
-#include "format/input.h"
+#include "core/words.h"
+#include "format/tile_json.h"
 #include "methods/feature_checks.h"
 #include "pattern/recipe.h"
 #include "pattern/tile.h"
@@ -45,9 +46,8 @@ void readBake(const ComposeSettings& settings, const GBuffer& gbuffer, const Run
 					   : std::string("the difference to ") + (kind == BakedKind::volume_difference ? "volumes (" : "masks (") +
 							 std::string(volumeRow(kind != BakedKind::volume_difference).name) + ")";
 		};
-		throw Error(ExitCode::invalid_input, settings.bake + ": found " + kindName(values.kind) + ", expected " +
-												 kindName(expected) +
-												 (volumes ? ", as of nook bake --volumes" : ", as of nook bake without --volumes"));
+		refuseInput(settings.bake, kindName(values.kind),
+					kindName(expected) + (volumes ? ", as of nook bake --volumes" : ", as of nook bake without --volumes"));
 	}
 	const Tracer tracer(loaded.level, run);
 	fixed.baked = bakedPicture(tracer, values, gbuffer, run);
@@ -73,8 +73,7 @@ Static readStatic(const ComposeSettings& settings, const GBuffer& gbuffer, const
 			fixed.gbuffer->view.projection != gbuffer.view.projection ||
 			fixed.gbuffer->view.camera_from_world != gbuffer.view.camera_from_world)
 		{
-			throw Error(ExitCode::invalid_input,
-						settings.fixed + ": found another size or camera than the picture's, expected the same view");
+			refuseInput(settings.fixed, "another size or camera than the picture's", "the same view");
 		}
 	}
 	if (fixed.gbuffer)
@@ -207,9 +206,8 @@ PatternTile tileFor(const std::string& path, const ShadeSettings& settings, cons
 	}
 	if (tile.domain != domain)
 	{
-		throw Error(ExitCode::invalid_input, path + ": domain: found " + std::string(nameOf(tile.domain)) + ", expected " +
-												 std::string(nameOf(domain)) + " for --method " +
-												 std::string(nameOf(settings.method)));
+		refuseInput(path + ": domain", std::string(nameOf(tile.domain)),
+					std::string(nameOf(domain)) + " for --method " + std::string(nameOf(settings.method)));
 	}
 	return tile;
 }
@@ -315,9 +313,8 @@ Picture withoutGuard(const std::string& path, const GBuffer& gbuffer, const std:
 	Picture inner{gbuffer.width_px - 2 * guard_px, gbuffer.height_px - 2 * guard_px, {}};
 	if (inner.width_px < 1 || inner.height_px < 1)
 	{
-		throw Error(ExitCode::invalid_input, path + ": found " + std::to_string(gbuffer.width_px) + " x " +
-												 std::to_string(gbuffer.height_px) + " pixels, expected more than --guard " +
-												 std::to_string(guard_px) + " leaves nothing of");
+		refuseInput(path, std::to_string(gbuffer.width_px) + " x " + std::to_string(gbuffer.height_px) + " pixels",
+					"more than --guard " + std::to_string(guard_px) + " leaves nothing of");
 	}
 	inner.values = inside(gbuffer, values, guard_px);
 	return inner;

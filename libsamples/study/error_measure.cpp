@@ -5,6 +5,7 @@
 #include "study/measure_view.h"
 
 #include "core/error.h"
+#include "core/lists.h"
 #include "core/work_units.h"
 #include "scene/camera_choice.h"
 #include "scene/load.h"
@@ -26,12 +27,8 @@ constexpr double kFewTriangles = 2e-3;
 
 std::vector<uint8_t> bytesOf(const std::vector<float>& visibility)
 {
-	std::vector<uint8_t> bytes;
-	for (const float value : visibility)
-	{
-		bytes.push_back(static_cast<uint8_t>(std::clamp(255.0F * value + 0.5F, 0.0F, 255.0F)));
-	}
-	return bytes;
+	return mapped(visibility,
+				  [&](const float value) { return static_cast<uint8_t>(std::clamp(255.0F * value + 0.5F, 0.0F, 255.0F)); });
 }
 
 std::vector<Candidate> gridOf(const ErrorReportSettings& settings)

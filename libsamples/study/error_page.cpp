@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/decimal.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "core/text.h"
 #include "page/assets.h"
 #include "page/page_fill.h"
-#include "study/command_words.h"
 #include "study/error_report.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cassert>
-#include <cctype>
 #include <filesystem>
 #include <string_view>
 #include <utility>
@@ -114,24 +113,6 @@ std::string errorReportCommand(const ErrorReportSettings& settings)
 	text += settings.measure.slowest_s != kSlowestPicture_s ? " --slowest " + numberText(settings.measure.slowest_s) : "";
 	text += settings.shifts != defaults.shifts ? " --shifts " + std::to_string(settings.shifts) : "";
 	return text;
-}
-
-std::string shellWord(const std::string& text)
-{
-	const auto isPlain = [](char c)
-	{
-		return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("_-./:+=,").find(c) != std::string_view::npos;
-	};
-	if (!text.empty() && std::all_of(text.begin(), text.end(), isPlain))
-	{
-		return text;
-	}
-	std::string made = "'";
-	for (const char c : text)
-	{
-		made += c == '\'' ? std::string("'\\''") : std::string(1, c);
-	}
-	return made + "'";
 }
 
 std::string loadOptions(const LoadSettings& load)

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/error.h"
-#include "core/store.h"
+#include "core/work_units.h"
 #include "study/candidates.h"
 #include "study/error_report.h"
 #include "study/measure_view.h"

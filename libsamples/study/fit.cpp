@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/work_units.h"
 #include "methods/method_table.h"
@@ -97,10 +98,7 @@ public:
 		m_fit.candidate.recipe = recipeWith(m_start, found, fitShape(drawn(found, fitted)));
 		const std::vector<double> before = errorsOf(paper, levels);
 		const std::vector<double> after = errorsOf(m_fit.candidate, levels);
-		for (std::size_t i = 0; i < levels; ++i)
-		{
-			m_fit.errors.push_back({before[i], after[i]});
-		}
+		m_fit.errors = listOf(levels, [&](std::size_t i) { return FitError{before[i], after[i]}; });
 		return m_fit;
 	}
 
@@ -365,11 +363,7 @@ std::vector<double> fitNumbers(const std::vector<FitNumber>& numbers, const FitS
 							   const std::function<double(const std::vector<double>&)>& error)
 {
 	NumberSearch search(numbers, error);
-	std::vector<double> best;
-	for (std::size_t i = 0; i < numbers.size(); ++i)
-	{
-		best.push_back(search.moved(i, numbers[i].start));
-	}
+	std::vector<double> best = listOf(numbers.size(), [&](std::size_t i) { return search.moved(i, numbers[i].start); });
 	for (double factor = settings.first_step; factor >= settings.last_step; factor = std::sqrt(factor))
 	{
 		for (std::vector<double> next = search.explored(best, factor); search.at(next) < search.at(best);)
@@ -392,12 +386,7 @@ std::vector<double> fitNumbers(const std::vector<FitNumber>& numbers, const FitS
 
 std::vector<char> surfacesOf(const GBuffer& gbuffer)
 {
-	std::vector<char> surfaces;
-	for (const float depth : gbuffer.depth)
-	{
-		surfaces.push_back(static_cast<char>(std::isfinite(depth) ? 1 : 0));
-	}
-	return surfaces;
+	return mapped(gbuffer.depth, [](const float depth) { return static_cast<char>(std::isfinite(depth) ? 1 : 0); });
 }
 
 bool isShape(const RecipeValue& value)

@@ -3,6 +3,7 @@
 
 #include "core/content_hash.h"
 #include "core/decimal.h"
+#include "core/lists.h"
 #include "core/parallel.h"
 #include "core/system.h"
 #include "core/text.h"
@@ -139,14 +140,14 @@ using SteadyClock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kSpin{60}; // a few turns of a scheduler
 constexpr std::chrono::seconds kPause{6};
 
+constexpr int kLeastHeight_px = 64;
+
+} // namespace
+
 double secondsSince(SteadyClock::time_point start)
 {
 	return std::chrono::duration<double>(SteadyClock::now() - start).count();
 }
-
-constexpr int kLeastHeight_px = 64;
-
-} // namespace
 
 RendererFacts rendererOf(const MeasureSettings& settings)
 {
@@ -165,10 +166,7 @@ struct ViewBench::Data
 		  gbuffer(castGBuffer(of.tracer(), viewOf(from, given.width_px, given.height_px), given.width_px, given.height_px,
 							  NormalKind::geometric, how))
 	{
-		for (const float depth : gbuffer.depth)
-		{
-			surface.push_back(std::isfinite(depth) ? 1 : 0);
-		}
+		surface = mapped(gbuffer.depth, [](float depth) { return static_cast<uint8_t>(std::isfinite(depth) ? 1 : 0); });
 		surfaces = static_cast<std::size_t>(std::count(surface.begin(), surface.end(), uint8_t{1}));
 	}
 
@@ -232,16 +230,13 @@ struct ViewBench::Data
 		{
 			const auto start = std::chrono::steady_clock::now();
 			const std::vector<ReferenceValue> values = trace(rays, settings.seed + kOtherSeed, timed);
-			const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+			const double seconds = secondsSince(start);
 			if (i > 0 || repetitions == 0)
 			{
 				pass.drawings.push_back(seconds);
 			}
-			drawn.shaded.visibility.clear();
-			for (const ReferenceValue& value : values)
-			{
-				drawn.shaded.visibility.push_back(static_cast<float>(value.visibility));
-			}
+			drawn.shaded.visibility =
+				mapped(values, [](const ReferenceValue& value) { return static_cast<float>(value.visibility); });
 		}
 		drawn.shaded.renderer = "CPU";
 		drawn.shaded.passes = {pass};
@@ -581,12 +576,7 @@ double takenByOthers(int threads)
 					}
 					had[i] = before < 0.0 ? 1.0 : (threadSeconds() - before) / secondsSince(start);
 				});
-	double sum = 0.0;
-	for (const double share : had)
-	{
-		sum += std::clamp(share, 0.0, 1.0);
-	}
-	return 1.0 - sum / static_cast<double>(count);
+	return 1.0 - sumOver(had, [](double share) { return std::clamp(share, 0.0, 1.0); }) / static_cast<double>(count);
 }
 
 void BusyWatch::look()

@@ -260,4 +260,10 @@ ViewErrors errorsFrom(const JsonValue& value);
 std::optional<double> optionalNumber(const JsonValue& value);
 nlohmann::ordered_json optionalJson(const std::optional<double>& value);
 
+double secondsSince(std::chrono::steady_clock::time_point start);
+
+// The command's options for what differs from the defaults, each after a blank: " --unit 0.01 --up z --strict".
+struct LoadSettings;
+std::string loadOptions(const LoadSettings& load);
+
 } // namespace nook

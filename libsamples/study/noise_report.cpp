@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/text.h"
 #include "core/work_units.h"
@@ -115,21 +116,7 @@ Quality averageOf(const std::vector<Quality>& samples)
 	const auto count = static_cast<double>(samples.size());
 	const auto rms = [&](auto get)
 	{
-		double sum = 0.0;
-		for (const Quality& q : samples)
-		{
-			sum += get(q) * get(q);
-		}
-		return std::sqrt(sum / count);
-	};
-	const auto mean = [&](auto get)
-	{
-		double sum = 0.0;
-		for (const Quality& q : samples)
-		{
-			sum += get(q);
-		}
-		return sum / count;
+		return std::sqrt(sumOver(samples, [&](const Quality& q) { return get(q) * get(q); }) / count);
 	};
 	Quality average = samples.front();
 	for (const auto field : {&Quality::plane, &Quality::noise, &Quality::bias, &Quality::plane_exact})
@@ -138,7 +125,7 @@ Quality averageOf(const std::vector<Quality>& samples)
 	}
 	for (const auto field : {&Quality::greatest, &Quality::spread, &Quality::smallest_distance, &Quality::energy})
 	{
-		average.*field = mean([&](const Quality& q) { return q.*field; });
+		average.*field = sumOver(samples, [&](const Quality& q) { return q.*field; }) / count;
 	}
 	for (const auto field : {&Quality::cliff, &Quality::cliff_greatest, &Quality::centre, &Quality::crease, &Quality::cap})
 	{
@@ -254,11 +241,8 @@ Json measuresJson(const std::vector<const NoiseRow*>& rows)
 		{
 			continue; // this domain does not define it
 		}
-		Json& values = measures[std::string(field.name)] = Json::array();
-		for (const NoiseRow* row : rows)
-		{
-			values.push_back(optionalNumber(field.get(row->quality)));
-		}
+		measures[std::string(field.name)] =
+			mapped(rows, [&](const NoiseRow* row) { return optionalNumber(field.get(row->quality)); });
 	}
 	return measures;
 }
@@ -302,15 +286,8 @@ Json seriesJson(const NoiseReport& report, Domain domain, Variant variant, Metho
 	series["method"] = nameOf(method);
 	series["weights_rule"] = nameOf(WeightRule::voronoi);
 	series["voronoi"] = nameOf(VoronoiMode::exact);
-	for (const char* name : {"counts", "starts"})
-	{
-		series[name] = Json::array();
-	}
-	for (const NoiseRow* row : rows)
-	{
-		series["counts"].push_back(row->recipe.count);
-		series["starts"].push_back(row->recipe.starts);
-	}
+	series["counts"] = mapped(rows, [](const NoiseRow* row) { return row->recipe.count; });
+	series["starts"] = mapped(rows, [](const NoiseRow* row) { return row->recipe.starts; });
 	series["measures"] = measuresJson(rows);
 	if (with_points && (method == Method::refine || method == Method::electro))
 	{
@@ -559,14 +536,7 @@ std::string noiseReportHtml(const NoiseReport& report, const std::string& comman
 		 {std::pair{"selected", std::vector<int>{3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 19, 24, 32, 33, 48, 64}},
 		  std::pair{"compared", std::vector<int>{4, 8, 9, 16, 32, 64}}})
 	{
-		data[name] = Json::array();
-		for (const int count : wanted)
-		{
-			if (count <= most)
-			{
-				data[name].push_back(count);
-			}
-		}
+		data[name] = itemsWhere(wanted, [most](int count) { return count <= most; });
 	}
 	return pageHtml({"noise against sample count",
 					 version,

@@ -4,7 +4,6 @@
 #include "core/content_hash.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "core/store.h"
 #include "core/text.h"
 #include "core/work_units.h"
 #include "scene/camera_choice.h"
@@ -29,18 +28,6 @@ namespace nook
 {
 namespace
 {
-
-class Clock
-{
-public:
-	double seconds() const
-	{
-		return std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
-	}
-
-private:
-	std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
-};
 
 // The levels' views at every size that the search asks for, and what measuring costs.
 class TuneBench
@@ -155,14 +142,14 @@ Trial TuneBench::measure(std::size_t index, const Fidelity& fidelity)
 		{
 			prepare(index, m_views[i].level);
 		}
-		const Clock clock;
+		const auto start = std::chrono::steady_clock::now();
 		if (!known)
 		{
 			found = view.measure(candidate, how);
 		}
 		refuseLarge(*found);
 		const double error = view.errorBy(m_report.settings.measure, found->visibility);
-		trial.cost_s += clock.seconds();
+		trial.cost_s += secondsSince(start);
 		if (!known && m_store != nullptr)
 		{
 			m_store->put(name, *found);
@@ -256,7 +243,7 @@ ViewBench& TuneBench::benchAt(std::size_t view, double scale)
 	{
 		return found->second;
 	}
-	const Clock clock;
+	const auto start = std::chrono::steady_clock::now();
 	const auto side = [scale](int pixels)
 	{
 		return std::max(16, static_cast<int>(std::floor(scale * pixels + 0.5)));
@@ -277,7 +264,7 @@ ViewBench& TuneBench::benchAt(std::size_t view, double scale)
 			m_store->put("reference " + name, traced);
 		}
 	}
-	(scale == 1.0 ? m_report.prepared_s : m_report.coarse_s) += clock.seconds();
+	(scale == 1.0 ? m_report.prepared_s : m_report.coarse_s) += secondsSince(start);
 	return made;
 }
 
@@ -286,7 +273,7 @@ void TuneBench::prepare(std::size_t index, std::size_t level)
 	const Candidate& candidate = m_report.candidates[index];
 	const double coarsest = m_report.rungs.rungs.front().scale;
 	ViewBench& first = benchAt(0, coarsest);
-	const Clock clock;
+	const auto start = std::chrono::steady_clock::now();
 	LevelBench& bench = *m_report.levels[level].bench;
 	if (candidate.kind == CandidateKind::asset)
 	{
@@ -300,7 +287,7 @@ void TuneBench::prepare(std::size_t index, std::size_t level)
 	{
 		first.draw(candidate, m_how);
 	}
-	m_report.prepared_s += clock.seconds();
+	m_report.prepared_s += secondsSince(start);
 }
 
 // Sets the strength and the power of the pick to those that suit these levels, as an artist would with sliders.
@@ -453,9 +440,9 @@ TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings
 	MeasureSettings how;
 	how.gl_device = settings.gl_device;
 	report.renderer = rendererOf(how).name;
-	const Clock clock;
+	const auto start = std::chrono::steady_clock::now();
 	const std::vector<std::vector<LevelCamera>> cameras = readLevels(levels, load, settings, run, report);
-	report.prepared_s = clock.seconds();
+	report.prepared_s = secondsSince(start);
 	TuneBench bench(report, run);
 	bench.setViews(cameras);
 	if (bench.views() == 0)

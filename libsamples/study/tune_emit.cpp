@@ -159,12 +159,9 @@ private:
 	// Returns a file name from the level's name that no other level of this run has.
 	std::string nameOf(const TuneLevel& level, const std::string& ending)
 	{
-		std::string stem;
-		for (const char c : level.name)
-		{
-			stem += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' ? c : '_';
-		}
-		stem = stem.empty() ? "level" : stem;
+		std::string stem = level.name.empty() ? "level" : level.name;
+		std::replace_if(
+			stem.begin(), stem.end(), [](unsigned char c) { return std::isalnum(c) == 0 && c != '-'; }, '_');
 		std::string name = stem;
 		for (int i = 2; !m_names.insert(name).second; ++i)
 		{

@@ -2,6 +2,7 @@
 #include "study/tune.h"
 
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "core/text.h"
 #include "page/page_fill.h"
 #include "study/measure_view.h"
@@ -41,14 +42,8 @@ std::vector<std::size_t> front(const TuneReport& report)
 // Returns the candidates that were measured at full size on all views, fastest first.
 std::vector<std::size_t> onAllViews(const TuneReport& report)
 {
-	std::vector<std::size_t> all;
-	for (const Tried& tried : report.search.tried)
-	{
-		if (isFrom(tried, report.rungs.once()))
-		{
-			all.push_back(tried.candidate);
-		}
-	}
+	std::vector<std::size_t> all = indicesWhere(report.search.tried.size(),
+												[&](std::size_t i) { return isFrom(report.search.tried[i], report.rungs.once()); });
 	std::stable_sort(all.begin(), all.end(),
 					 [&](std::size_t a, std::size_t b) { return report.search.tried[a].time_s < report.search.tried[b].time_s; });
 	return all;
@@ -173,12 +168,7 @@ Json triedJson(const TuneReport& report, const TuneSearch& search, std::size_t i
 
 Json candidatesJson(const TuneReport& report, const TuneSearch& search)
 {
-	Json list = Json::array();
-	for (std::size_t i = 0; i < report.candidates.size(); ++i)
-	{
-		list.push_back(triedJson(report, search, i));
-	}
-	return list;
+	return listOf(report.candidates.size(), [&](std::size_t i) { return triedJson(report, search, i); });
 }
 
 // Levels in the order of the command line.
@@ -207,34 +197,26 @@ Json levelsJson(const TuneReport& report)
 
 Json emissionJson(const TuneEmission& emission)
 {
-	Json json{{"files", Json::array()},
-			  {"holds", Json::array()},
-			  {"commands", emission.commands},
-			  {"use", emission.use},
-			  {"left_out", Json::array()}};
-	for (const EmittedFile& file : emission.files)
-	{
-		json["files"].push_back(file.name);
-		json["holds"].push_back(file.what);
-	}
-	for (const LeftOut& left : emission.left_out)
-	{
-		json["left_out"].push_back({{"feature", left.feature}, {"why", left.why}});
-	}
-	return json;
+	return {{"files", mapped(emission.files, [](const EmittedFile& file) { return file.name; })},
+			{"holds", mapped(emission.files, [](const EmittedFile& file) { return file.what; })},
+			{"commands", emission.commands},
+			{"use", emission.use},
+			{"left_out", mapped(emission.left_out,
+								[](const LeftOut& left) {
+									return Json{{"feature", left.feature}, {"why", left.why}};
+								})}};
 }
 
 Json comparisonJson(const TuneReport& report)
 {
 	const CandidateComparison& found = *report.runner_up;
-	Json json{{"candidate", report.candidates[*report.search.runner_up].name()},
-			  {"views", found.views},
-			  {"error_difference", found.error_difference},
-			  {"error_standard", optionalJson(found.error_standard)},
-			  {"errors_differ", found.errors_differ},
-			  {"time_ratio", optionalJson(found.time_ratio)},
-			  {"times_differ", found.times_differ ? Json(*found.times_differ) : Json()}};
-	return json;
+	return {{"candidate", report.candidates[*report.search.runner_up].name()},
+			{"views", found.views},
+			{"error_difference", found.error_difference},
+			{"error_standard", optionalJson(found.error_standard)},
+			{"errors_differ", found.errors_differ},
+			{"time_ratio", optionalJson(found.time_ratio)},
+			{"times_differ", found.times_differ ? Json(*found.times_differ) : Json()}};
 }
 
 } // namespace
@@ -263,10 +245,7 @@ std::string gridText(const TuneReport& report)
 std::string tuneLines(const TuneReport& report, const TuneText& text)
 {
 	std::string lines = goalText(report.settings) + " on " + report.renderer + "\n" + whatWasMeasured(report) + "\n";
-	for (const std::string& line : failures(report))
-	{
-		lines += line + "\n";
-	}
+	lines += joinedText(failures(report), "", [](const std::string& line) { return line + "\n"; });
 	lines += "      ms   spread    " + std::string(nameOf(report.settings.measure)) +
 			 "        MB   candidate (full size, all views; * the front)\n";
 	const std::vector<std::size_t> best = front(report);
@@ -284,14 +263,9 @@ std::string tuneLines(const TuneReport& report, const TuneText& text)
 	lines += confidenceText(report) + "\n";
 	if (text.emission != nullptr)
 	{
-		for (const LeftOut& left : text.emission->left_out)
-		{
-			lines += "left out: " + left.feature + ": " + left.why + "\n";
-		}
-		for (const std::string& line : text.emission->use)
-		{
-			lines += "use: " + line + "\n";
-		}
+		lines += joinedText(text.emission->left_out, "",
+							[](const LeftOut& left) { return "left out: " + left.feature + ": " + left.why + "\n"; });
+		lines += joinedText(text.emission->use, "", [](const std::string& line) { return "use: " + line + "\n"; });
 	}
 	lines += searchText(report) + "\n";
 	return lines + (report.grid ? gridText(report) + "\n" : "");
@@ -342,11 +316,8 @@ std::string tuneJson(const TuneReport& report, const TuneText& text)
 	json["busy"] = report.busy;
 	json["runner_up"] = report.runner_up ? comparisonJson(report) : Json();
 	json["confidence"] = confidenceText(report);
-	json["front"] = Json::array();
-	for (const std::size_t i : frontOf(report.grid ? *report.grid : report.search, report.rungs.once()))
-	{
-		json["front"].push_back(report.candidates[i].name());
-	}
+	json["front"] = mapped(frontOf(report.grid ? *report.grid : report.search, report.rungs.once()),
+						   [&](const std::size_t i) { return report.candidates[i].name(); });
 	json["candidates"] = candidatesJson(report, report.search);
 	if (report.grid)
 	{

@@ -5,6 +5,7 @@
 #include "study/tune_search.h"
 
 #include "core/error.h"
+#include "core/lists.h"
 #include "study/front.h"
 
 #include <algorithm>
@@ -105,12 +106,7 @@ private:
 
 	std::vector<std::size_t> all() const
 	{
-		std::vector<std::size_t> every(m_made.tried.size());
-		for (std::size_t i = 0; i < every.size(); ++i)
-		{
-			every[i] = i;
-		}
-		return every;
+		return listOf(m_made.tried.size(), [](std::size_t i) { return i; });
 	}
 
 	std::string nameOfRung(std::size_t rung) const
@@ -515,9 +511,8 @@ std::vector<std::size_t> TuneChoice::possible(const TuneSearch& search, const st
 		least = bounded(search.tried[i]) <= 1.0 / slack ? std::min(least, wanted(search.tried[i])) : least;
 	}
 	least *= m_goal.budget_s ? 1.0 : kOnceSlack;
-	std::vector<std::size_t> kept;
-	std::copy_if(left.begin(), left.end(), std::back_inserter(kept),
-				 [&](std::size_t i) { return bounded(search.tried[i]) <= slack && wanted(search.tried[i]) <= least; });
+	std::vector<std::size_t> kept =
+		itemsWhere(left, [&](std::size_t i) { return bounded(search.tried[i]) <= slack && wanted(search.tried[i]) <= least; });
 	std::stable_sort(kept.begin(), kept.end(),
 					 [&](std::size_t a, std::size_t b) { return wanted(search.tried[a]) < wanted(search.tried[b]); });
 	if (kept.empty() && !left.empty())

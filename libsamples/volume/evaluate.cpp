@@ -9,8 +9,8 @@
 #include "methods/aov_text.h"
 #include "methods/volume_kernels.h"
 #include "scene/tracer_tree.h"
-#include "volume/prism.h"
 #include "volume/volume_glb.h"
+#include "volume/volumes.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/lists.h"
 #include "volume/surface.h"
 
 #include <glm/common.hpp>
@@ -264,15 +265,8 @@ private:
 
 	std::vector<std::size_t> sharpCorners() const
 	{
-		std::vector<std::size_t> corners;
-		for (std::size_t i = 0; i < m_loop.size(); ++i)
-		{
-			if (squareFrom(at(i), at(i + m_loop.size() - 1), at(i + 1)) > m_square)
-			{
-				corners.push_back(i);
-			}
-		}
-		return corners;
+		return indicesWhere(m_loop.size(),
+							[&](std::size_t i) { return squareFrom(at(i), at(i + m_loop.size() - 1), at(i + 1)) > m_square; });
 	}
 
 	// The least corner and the one farthest from it.

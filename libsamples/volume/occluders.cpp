@@ -5,8 +5,8 @@
 #include "core/lists.h"
 #include "core/parallel.h"
 #include "scene/topology.h"
-#include "volume/prism.h"
 #include "volume/surface.h"
+#include "volume/volumes.h"
 
 #include <glm/geometric.hpp>
 #include <meshoptimizer.h>

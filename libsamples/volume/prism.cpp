@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: Morgan McGuire, Ambient Occlusion Volumes, 2010 (AOV), §5.2.
-#include "volume/prism.h"
+#include "volume/volumes.h"
 
 #include <glm/geometric.hpp>
 

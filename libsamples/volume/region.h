@@ -141,7 +141,7 @@ struct VolumeRegion
 };
 
 // Region of the side that `front` (unit, perpendicular to the polygon) points to; corners counter-clockwise seen from `winding`,
-// which is front or −front. Unless exact, limited to 2δ from the nearest corner on each axis (prism.h).
+// which is front or −front. Unless exact, limited to 2δ from the nearest corner on each axis.
 VolumeRegion regionOf(std::span<const glm::dvec3> corners, glm::dvec3 front, glm::dvec3 winding, double distance_m,
 					  bool exact_bounds);
 

@@ -7,8 +7,8 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "volume/evaluate.h"
-#include "volume/prism.h"
 #include "volume/region.h"
+#include "volume/volumes.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>

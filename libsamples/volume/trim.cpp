@@ -8,8 +8,8 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "volume/evaluate.h"
-#include "volume/prism.h"
 #include "volume/sight.h"
+#include "volume/volumes.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "core/text.h"
 #include "scene/level_glb.h"
 
@@ -239,11 +240,7 @@ private:
 
 	Json root(std::string_view level, std::string_view generator, std::size_t chunk_bytes)
 	{
-		Json nodes = Json::array();
-		for (std::size_t i = 0; i < m_nodes.size(); ++i)
-		{
-			nodes.push_back(i);
-		}
+		Json nodes = listOf(m_nodes.size(), [](std::size_t i) { return i; });
 		if (m_origin != glm::dvec3(0.0))
 		{
 			m_nodes.push_back({{"name", "level"}, {"translation", {m_origin.x, m_origin.y, m_origin.z}}, {"children", nodes}});

@@ -6,7 +6,7 @@
 #include "scene/builtin.h"
 #include "scene/load.h"
 #include "volume/occluders.h"
-#include "volume/prism.h"
+#include "volume/volumes.h"
 
 #include <benchmark/benchmark.h>
 

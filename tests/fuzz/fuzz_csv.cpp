@@ -2,7 +2,7 @@
 // Patterns as CSV, of any domain.
 #include "fuzz.h"
 
-#include "format/input.h"
+#include "format/tile_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {

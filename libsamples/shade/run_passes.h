@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Times of a plan's passes over several drawings.
+// Runs the passes of a plan on the CPU, and takes the times of passes over several drawings.
 #pragma once
 
+#include "core/progress.h"
+#include "methods/block.h"
 #include "methods/passes.h"
+#include "methods/picture.h"
 #include "shade/shade.h"
 
 #include <string>
@@ -10,6 +13,17 @@
 
 namespace nook
 {
+
+using Planes = std::vector<PicturePlane>; // levels or layers of a picture
+
+// Allocates the plan's pictures.
+std::vector<Planes> picturesFor(const ShadePlan& plan);
+
+// `inputs` holds depths, normals and samples.
+void runPass(const ShadePass& pass, const shade_kernels::Kernels& inputs, std::vector<Planes>& pictures, const RunSettings& run);
+
+// Prefix sums of a picture of counts along x (axis 0) or y (1). Requires planes of equal size.
+void scanOnCpu(const PicturePlane& source, int axis, PicturePlane& target, const RunSettings& run);
 
 // The median, without the first of several drawings, which is a warm-up. Requires at least one.
 PassTime passTimeOf(const std::string& name, std::vector<double> seconds);

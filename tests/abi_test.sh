@@ -7,7 +7,7 @@ set -u
 header=$1/include/nook/nook.h
 known=$1/tests/nook.abi
 if ! command -v abidw >/dev/null || [ "$(uname -m)" != x86_64 ]; then
-	echo "skipped: found $(uname -m) and no abidw, expected x86_64 and Debian's package abigail-tools (scripts/setup.sh library)"
+	echo "skipped: found $(uname -m) and no abidw, expected x86_64 and Debian's package abigail-tools (scripts/setup.sh)"
 	exit 77
 fi
 . "$(dirname "$0")/table.sh"

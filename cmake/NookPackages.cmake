@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # cpack -G DEB in the build folder makes nook, with the program and its patterns, and libnook-dev, with the CMake package and the
-# headers. cpack -G ZIP of a Windows build makes the program.
+# headers; with NOOK_LIBRARY also the library, libnook1, and python3-nook. cpack -G ZIP of a Windows build makes the program.
 set(CPACK_PACKAGE_NAME nook)
 set(CPACK_PACKAGE_VENDOR nook)
 set(CPACK_PACKAGE_CONTACT "nook maintainers <nook@users.noreply.github.com>")
@@ -8,7 +8,13 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "ambient obscurance assets, made and measu
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_VERBATIM_VARIABLES ON)
-set(CPACK_COMPONENTS_ALL nook libnook-dev)
+set(packages nook libnook-dev)
+if(TARGET nook_library)
+	get_target_property(abi nook_library SOVERSION)
+	set(library_package libnook${abi})
+	list(APPEND packages ${library_package} python3-nook)
+endif()
+set(CPACK_COMPONENTS_ALL ${packages})
 
 set(NOOK_HOMEPAGE "" CACHE STRING "Address of the project, for packages' Homepage")
 set(CPACK_PACKAGE_HOMEPAGE_URL ${NOOK_HOMEPAGE})
@@ -41,11 +47,34 @@ else()
 	set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 	set(CPACK_DEBIAN_NOOK_PACKAGE_NAME nook)
 	set(CPACK_DEBIAN_NOOK_PACKAGE_SHLIBDEPS ON)
-	set(CPACK_COMPONENT_NOOK_DESCRIPTION "Program that makes sample patterns, shader modules and occlusion volumes\n of levels for ambient obscurance, and measures how far they are from\n ray tracing.")
+	set(CPACK_COMPONENT_NOOK_DESCRIPTION "Program that makes sample patterns, shader modules and occlusion volumes\nof levels for ambient obscurance, and measures how far they are from\nray tracing.")
 	set(CPACK_DEBIAN_LIBNOOK-DEV_PACKAGE_NAME libnook-dev)
 	set(CPACK_DEBIAN_LIBNOOK-DEV_PACKAGE_SECTION libdevel)
 	set(CPACK_DEBIAN_LIBNOOK-DEV_PACKAGE_DEPENDS "nook (= ${PROJECT_VERSION})")
-	set(CPACK_COMPONENT_LIBNOOK-DEV_DESCRIPTION "Package of CMake for nook, and headers that read its files\n With find_package(nook), patterns, shader modules, levels and their\n volumes are made while a project builds.")
+	set(CPACK_COMPONENT_LIBNOOK-DEV_DESCRIPTION "Package of CMake for nook, and headers that read its files\nWith find_package(nook), patterns, shader modules, levels and their\nvolumes are made while a project builds.")
+	if(library_package)
+		string(TOUPPER ${library_package} upper)
+		set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+		set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
+		set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${library_package})
+		set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION libs)
+		set(CPACK_DEBIAN_${upper}_PACKAGE_SHLIBDEPS ON)
+		set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS "nook (= ${PROJECT_VERSION})") # its workers
+		set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/debian/triggers)
+		set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+		install(FILES ${CMAKE_CURRENT_LIST_DIR}/debian/overrides DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides RENAME ${library_package}
+			COMPONENT ${library_package})
+		set(CPACK_COMPONENT_${upper}_DESCRIPTION "C API of nook\nThe verbs of the program nook on arrays in memory: patterns, bakes,\nocclusion volumes, ray-traced references.")
+		string(APPEND CPACK_DEBIAN_LIBNOOK-DEV_PACKAGE_DEPENDS ", ${library_package} (= ${PROJECT_VERSION})")
+		set(CPACK_DEBIAN_LIBNOOK-DEV_PACKAGE_SUGGESTS "libembree-dev, libepoxy-dev, libmeshoptimizer-dev, libmpfr-dev, libpng-dev, libtbb-dev") # for libnook.a
+		set(CPACK_DEBIAN_PYTHON3-NOOK_PACKAGE_NAME python3-nook)
+		set(CPACK_DEBIAN_PYTHON3-NOOK_PACKAGE_SECTION python)
+		set(CPACK_DEBIAN_PYTHON3-NOOK_PACKAGE_ARCHITECTURE all)
+		set(CPACK_DEBIAN_PYTHON3-NOOK_PACKAGE_DEPENDS "${library_package} (>= ${PROJECT_VERSION}), python3 (>= 3.9), python3-numpy")
+		set(CPACK_DEBIAN_PYTHON3-NOOK_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/debian/postinst ${CMAKE_CURRENT_LIST_DIR}/debian/prerm)
+		set(CPACK_DEBIAN_PYTHON3-NOOK_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+		set(CPACK_COMPONENT_PYTHON3-NOOK_DESCRIPTION "Python package of nook, on numpy arrays\nSample patterns, bakes, occlusion volumes and ray-traced references for\nambient obscurance.")
+	endif()
 
 	# Files that Debian requires in addition to the licences.
 	execute_process(COMMAND git -C ${PROJECT_SOURCE_DIR} log -1 --format=%aD
@@ -55,7 +84,7 @@ else()
 	endif()
 	find_program(NOOK_GZIP gzip)
 	mark_as_advanced(NOOK_GZIP)
-	foreach(package IN ITEMS nook libnook-dev)
+	foreach(package IN LISTS packages)
 		set(folder ${PROJECT_BINARY_DIR}/debian/${package})
 		configure_file(${CMAKE_CURRENT_LIST_DIR}/debian/copyright ${folder}/copyright COPYONLY)
 		configure_file(${CMAKE_CURRENT_LIST_DIR}/debian/changelog.in ${folder}/changelog @ONLY)

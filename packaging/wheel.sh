@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # packaging/wheel.sh INSTALLED OUT: the Python package with libnook, its workers and the libraries that they need as one wheel in the
 # folder OUT. INSTALLED: where a build with -DNOOK_LIBRARY=ON was installed (cmake --install BUILD --prefix INSTALLED).
+# OpenImageIO and its 250 libraries are not in it: nook_image_worker, which alone needs them, uses the system's, as in portable.sh.
 # Needs patchelf, binutils and python3. The tag states the glibc whose symbols the files ask for.
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
@@ -25,7 +26,7 @@ cp "$(dirname "$library")/nook/"nook_*_worker "$libs"
 # Libraries that every Linux has stay outside, and so does libGL, which belongs to the machine's driver.
 system='^(linux-vdso|ld-linux|libc|libm|libdl|libpthread|librt|libresolv|libutil|libgcc_s|libstdc\+\+|libGL|libEGL|libOpenGL|libGLX|libGLdispatch|libX11|libxcb)[.-]'
 for file in "$libs"/*; do
-	ldd "$file" | sed -n 's/^\t\(.*\) => \(\/.*\) (0x.*/\1 \2/p'
+	[ "${file##*/}" = nook_image_worker ] || ldd "$file" | sed -n 's/^\t\(.*\) => \(\/.*\) (0x.*/\1 \2/p'
 done | sort -u | while read -r name path; do
 	if printf '%s\n' "$name" | grep -Eq "$system" || [ -e "$libs/$name" ]; then
 		continue
@@ -36,7 +37,10 @@ done | sort -u | while read -r name path; do
 done
 for file in "$libs"/*; do
 	strip --strip-unneeded "$file"
-	patchelf --set-rpath '$ORIGIN' "$file"
+	case $file in
+	*/nook_image_worker) patchelf --remove-rpath "$file" ;;
+	*) patchelf --set-rpath '$ORIGIN' "$file" ;;
+	esac
 done
 
 # The newest glibc symbol decides; libstdc++ and libgcc_s are the system's.

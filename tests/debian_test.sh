@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: debian_test.sh PROGRAM SOURCE BUILD. Makes Debian packages of BUILD, checks them with lintian, installs them in an empty
-# root and uses find_package(nook) from there. Exit code 77: a tool is missing.
+# root and uses find_package(nook) and, where BUILD has the library, the Python package from there. Exit code 77: a tool is missing.
 set -u
 nook=$1
 build=$3
@@ -24,10 +24,17 @@ step "cpack" sh -c 'cd "$1" && cpack -G DEB -B "$2"' sh "$build" "$folder/packag
 arch=$(dpkg --print-architecture)
 program="$folder/packages/nook_${version}_$arch.deb"
 library="$folder/packages/libnook-dev_${version}_$arch.deb"
-step "the packages are named as Debian names them" ls "$program" "$library" || finish
+shared=
+python=
+if grep -q '^NOOK_LIBRARY:BOOL=ON' "$build/CMakeCache.txt"; then
+	shared="$folder/packages/libnook1_${version}_$arch.deb"
+	python="$folder/packages/python3-nook_${version}_all.deb"
+fi
+set -- "$program" "$library" ${shared:+"$shared" "$python"}
+step "the packages are named as Debian names them" ls "$@" || finish
 
 # Runs as root, which lintian warns about; fails on errors.
-step "lintian" lintian --allow-root --no-tag-display-limit --fail-on error "$program" "$library" || cat "$folder/log"
+step "lintian" lintian --allow-root --no-tag-display-limit --fail-on error "$@" || cat "$folder/log"
 
 # has PACKAGE PATH
 has()
@@ -49,7 +56,7 @@ root="$folder/an empty root"
 mkdir -p "$root/var/lib/dpkg/info" "$root/var/lib/dpkg/updates" "$root/var/log"
 : >"$root/var/lib/dpkg/status"
 : >"$root/var/lib/dpkg/available"
-step "dpkg --install" dpkg "--root=$root" --force-not-root --force-depends --install "$program" "$library" || cat "$folder/log"
+step "dpkg --install" dpkg "--root=$root" --force-not-root --force-depends --force-script-chrootless --install "$@" || cat "$folder/log"
 checks=$((checks + 1))
 [ "$("$root/usr/bin/nook" --version)" = "$("$nook" --version)" ] || problem "the installed program says another version"
 
@@ -65,4 +72,24 @@ EOT
 step "find_package: configure" cmake -G Ninja -S "$folder/project" -B "$folder/project/build" "-DCMAKE_PREFIX_PATH=$root/usr" &&
 	step "find_package: build" cmake --build "$folder/project/build" && step "find_package: run" "$folder/project/build/uses"
 step "found in that root" grep -q "$root/usr" "$folder/project/build/CMakeCache.txt"
+
+# Python's numpy is the machine's; the library and its workers are those of the root.
+if [ -n "$python" ]; then
+	has "$shared" "usr/lib/libnook.so.1 -> .*"
+	has "$python" usr/lib/python3/dist-packages/nook/__init__.py
+	checks=$((checks + 1))
+	dpkg-deb --field "$shared" Depends | grep -q "libembree3-3" || problem "libnook1: found no dependency on libembree3-3"
+	for package in "libnook1 (>= $version)" python3-numpy; do
+		dpkg-deb --field "$python" Depends | grep -Fq "$package" || problem "python3-nook: found no dependency on $package"
+	done
+	printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$folder/level.obj"
+	step "Python: the pattern of the program" "$nook" pattern --domain disk --count 9 -o "$folder/program.json"
+	step "Python" env -C "$folder" -u NOOK_LIBRARY "PYTHONPATH=$root/usr/lib/python3/dist-packages" \
+		"LD_LIBRARY_PATH=$(dirname "$(find "$root/usr/lib" -name libnook.so.1)")" /usr/bin/python3 -B -c '
+import nook
+assert nook.__file__.startswith("'"$root"'"), nook.__file__
+nook.pattern("disk", 9).save("python.json")
+print(nook.Level.load("level.obj").bake(radius=1, rays=16).visibility)'
+	same "$folder/python.json" "$folder/program.json" "Python: other bytes than those of the program"
+fi
 finish

@@ -268,6 +268,42 @@ fails 3 'kept_other.gltf: asset.extras.nook.undo: found no patch of this file' b
 for to in texcoord texcoord:8 custom: 'custom:a b' color:1 grey; do
 	fails 1 '--to: found' bake kept_two.gltf --radius 1 --to "$to" -o b.gltf
 done
+# Parts: a lamp that is ignored darkens as little as none, and nodes that receive nothing keep their mesh.
+sed 's/"name": "high"/"name": "Lamp, old"/; s/"extras": 3/"extras": {"kind": "floor"}/' kept_two.gltf >kept_parts.gltf
+sed 's/"nodes": .1, 0./"nodes": [0]/' kept_parts.gltf >kept_alone.gltf
+works '' bake kept_alone.gltf --radius 1 --rays 32 -o kept_alone.csv --json s.json
+works '"parts": ."/Lamp, old/meshes.0.", "/low/meshes.0."' info kept_parts.gltf --json -
+for parts in 'Lamp*' '/Lamp*' 'Lamp? old' 'none,Lamp*'; do
+	case $parts in
+	none*) fails 1 "--ignore: found 'none', expected parts of kept_parts.gltf: '/Lamp, old/meshes" bake kept_parts.gltf --radius 1 --ignore "$parts" -o b.csv ;;
+	*)
+		works '' bake kept_parts.gltf --radius 1 --rays 32 --ignore "$parts" -o b.csv --json s.json
+		checks=$((checks + 1))
+		cmp -s b.csv kept_alone.csv || problem "--ignore $parts: found other values than without the part"
+		;;
+	esac
+done
+rm -f b.csv blend.csv
+works '"receivers": ."extras:kind=floor".' bake kept_parts.gltf --radius 1 --rays 32 --occluders low --receivers extras:kind=floor --threads 1 -o kept_7.gltf -o b.csv --json -
+additions kept_parts.gltf kept_7.gltf
+checks=$((checks + 1))
+[ "$(grep -c '_VISIBILITY"' kept_7.gltf)" -eq 1 ] && [ "$(grep -o '"mesh": [0-9]' kept_7.gltf | tr '\n' ' ')" = '"mesh": 1 "mesh": 0 ' ] ||
+	problem "--receivers: found $(grep -o '"mesh": [0-9]' kept_7.gltf | tr '\n' ' '), expected a copy for the receiver alone"
+[ "$(cut -d, -f1 b.csv | sort -u | tr '\n' ' ')" = '0 node ' ] || problem "--receivers: found other nodes in $(cat b.csv)"
+cut -d, -f5 b.csv | grep -v '^1$' | grep -qv visibility && problem "--occluders: found values other than 1 in $(cat b.csv)"
+works '' bake kept_parts.gltf --radius 1 --rays 32 --occluders low --receivers extras:kind=floor --threads 2 -o b.gltf --json s.json
+checks=$((checks + 1))
+sed 's/b.gltf/kept_7.gltf/' b.gltf | cmp -s - kept_7.gltf || problem "--receivers: found other bytes with two threads"
+there b.csv b.gltf s.json
+works '' bake kept_still.obj --radius 1 --rays 32 --receivers '*' -o b.glb --json s.json
+works '"occluders": ."[*]".' bake builtin:cornell --radius 1 --probes 1 --rays 6 --occluders '*' --json -
+there b.glb s.json
+fails 1 '--receivers: found with --max-error' bake kept_parts.gltf --radius 1 --receivers low --max-error 0.1 -o b.glb
+fails 1 '--receivers: found with --texture' bake kept_parts.gltf --radius 1 --receivers low --texture 64 -o b.glb
+fails 1 "--ignore: found 'a,,b', expected patterns of parts" bake kept_parts.gltf --radius 1 --ignore a,,b -o b.glb
+fails 1 "--occluders: found 'material:x', expected parts of" bake kept_parts.gltf --radius 1 --occluders material:x -o b.glb
+fails 1 "--receivers: found 'extras:kind=wall', expected parts of kept_parts.gltf: 'extras:kind=floor'" bake kept_parts.gltf --radius 1 --receivers extras:kind=wall -o b.glb
+fails 3 'kept_parts.gltf: ignore: found every part' bake kept_parts.gltf --radius 1 --ignore '*' -o b.glb
 fails 1 'b.gltf: found the ending of a glTF in text' bake builtin:cornell --radius 1 -o b.gltf
 fails 1 '--instances: found with --max-error' bake kept_two.gltf --radius 1 --max-error 0.1 --instances shared -o b.glb
 fails 1 'kept_two.bin: named twice' bake kept_two.gltf --radius 1 -o b.glb --json kept_two.bin

@@ -64,6 +64,41 @@ printf 'newmtl a\nmap_d -imfchan z a.png\n' >kept_a.mtl
 fails 5 'kept_a.mtl: line 2: found the channel z' level kept_a.obj -o l.glb
 rm kept_a.obj kept_a.mtl
 
+# Parts: what is left out is as if the file had it not, for rays, pictures and levels.
+printf 'usemtl ground\no Floor\nv -2 0 2\nv 2 0 2\nv 2 0 -2\nv -2 0 -2\nf 1 2 3 4\n' >kept_floor.obj
+{
+	cat kept_floor.obj
+	printf 'usemtl brick\no Wall\nv -2 0 -1\nv 2 0 -1\nv 2 2 -1\nv -2 2 -1\nf 5 6 7 8\n'
+} >kept_parts.obj
+printf 'x,y,z,nx,ny,nz\n0,0,-0.9,0,1,0\n0,0,1,0,1,0\n' >kept_points.csv
+works '' reference kept_floor.obj --points kept_points.csv --radius 1 -o kept_floor.csv
+for parts in '--ignore Wall' '--ignore material:brick' '--occluders Floor' '--occluders /Floor' '--ignore Wall --occluders material:gr*'; do
+	# shellcheck disable=SC2086 # words
+	works '' reference kept_parts.obj --points kept_points.csv --radius 1 $parts -o r.csv
+	checks=$((checks + 1))
+	cmp -s r.csv kept_floor.csv || problem "reference $parts: found $(cat r.csv), expected $(cat kept_floor.csv)"
+done
+works '' reference kept_parts.obj --points kept_points.csv --radius 1 -o r.csv
+checks=$((checks + 1))
+cmp -s r.csv kept_floor.csv && problem "reference: found the wall darkening nothing"
+sky=$("$nook" gbuffer kept_floor.obj --eye 0,1,3 --target 0,1,0 --size 32x18 --json - | grep sky_share)
+works "$sky" gbuffer kept_parts.obj --eye 0,1,3 --target 0,1,0 --size 32x18 --ignore Wall --json -
+works '"triangles": 2,' level kept_parts.obj --ignore 'W*l' --json - -o l.glb
+works '"parts": ."/Floor", "/Wall".' info kept_parts.obj --json -
+works '"triangles": 4,' level kept_floor.obj kept_parts.obj --move 0,0,0 --move 9,0,0 --ignore Wall --json -
+there l.glb r.csv
+fails 1 "--ignore: found 'Wal', expected parts of kept_parts.obj: '/Floor', '/Wall'" info kept_parts.obj --ignore Wal
+fails 1 "--occluders: found 'material:a', expected parts of kept_parts.obj: 'material:" reference kept_parts.obj --points kept_points.csv --radius 1 --occluders material:a -o r.csv
+fails 1 "--ignore: found 'extras:a', expected parts of kept_parts.obj, which has none" gbuffer kept_parts.obj --ignore extras:a -o g.exr
+fails 1 '--occluders: found with --from depth' reference --gbuffer a.exr --measure sphere --from depth --radius 1 --occluders a -o r.exr
+fails 1 '--ignore: found with .a.exr., expected a level' gbuffer a.exr --ignore a -o g.exr
+fails 3 'kept_parts.obj: ignore: found every part' level kept_parts.obj --ignore Wall --ignore Floor -o l.glb
+sed 's/o Wall/o UCX_Wall/; s/o Floor/o sky/' kept_parts.obj >kept_sky.obj
+works "collision-meshes: 1 kept, first mesh 'UCX_Wall', which --ignore 'UCX_Wall' leaves out" info kept_sky.obj
+works 'skies: 1 kept' info kept_sky.obj
+fails 3 'kept_sky.obj: mesh .UCX_Wall., which --ignore .UCX_Wall. leaves out: found collision-meshes' info kept_sky.obj --strict
+rm kept_*
+
 # Cells.
 works '"triangles_around": 0' level builtin:cornell --cell -100,-100,-100,100,100,100 --around 1 -o l.glb --json -
 there l.glb

@@ -256,6 +256,34 @@ TEST_CASE("bake: odd levels: one triangle, unused vertices, slivers, one ray", "
 	}
 }
 
+TEST_CASE("bake: only chosen parts darken, and only chosen parts get values", "[bake]")
+{
+	Level level = emptyLevel();
+	addFloor(level, {-1.0, 0.0, -1.0}, 2.0, 4);
+	const std::size_t vertices = level.positions.size();
+	const std::size_t triangles = level.triangles.size();
+	addBox(level, {-0.5, 0.2, -0.5}, {0.5, 1.2, 0.5});
+	level.meshes = {{"floor", 0, triangles}, {"box", triangles, 12}};
+	const std::vector<uint8_t> floor = chosenTriangles(level, std::vector<std::string>{"floor"}, "receivers");
+	const LevelPart part = partOf(level, floor, 1);
+	REQUIRE(part.level.positions.size() == vertices);
+	BakeSettings settings = within(10.0);
+	settings.receivers = &part.level;
+	const Tracer all(level, {});
+	const Tracer alone(level, {}, nullptr, floor);
+	for (const BakeFit fit : {BakeFit::surface, BakeFit::points})
+	{
+		settings.fit = fit;
+		const VertexBake open = bakeVertices(alone, settings, {});
+		REQUIRE(open.visibility.size() == vertices);
+		CHECK(std::all_of(open.visibility.begin(), open.visibility.end(), [](float v) { return v > 0.9999F; }));
+		const VertexBake dark = bakeVertices(all, settings, {2, {}, nullptr});
+		REQUIRE(dark.visibility.size() == vertices);
+		CHECK(*std::min_element(dark.visibility.begin(), dark.visibility.end()) < 0.5F);
+		CHECK(dark.visibility == bakeVertices(all, settings, {1, {}, nullptr}).visibility);
+	}
+}
+
 TEST_CASE("bake: bent normals beside a wall without end lean away from it", "[bake]")
 {
 	Level level = emptyLevel();

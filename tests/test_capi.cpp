@@ -119,6 +119,23 @@ TEST_CASE("capi: vertices without a triangle are NaN, the others keep their plac
 	CHECK(gbuffer(Level::create(positions, triangles), view).array("depth").shape[0] == 6);
 }
 
+TEST_CASE("capi: parts are ignored where a level is loaded, and chosen where it is used", "[capi]")
+{
+	const TemporaryFolder folder;
+	const std::string path = folder / "a.obj";
+	writeFile(path, "v 0 0 1\nv 1 0 1\nv 1 0 0\no Floor\nf 1 2 3\nv 0 0 0\nv 1 0 0\nv 1 1 0\no Wall\nf 4 5 6\n");
+	const Options options = Options().set("radius", 1.0).set("rays", 32).set("receivers", "Wall").set("occluders", "Wall");
+	const std::vector<float> values = bake(Level::load(path), options).values<float>("visibility");
+	REQUIRE(values.size() == 6);
+	CHECK((std::isnan(values[0]) && values[3] == 1.0F && values[5] == 1.0F));
+	const Level ignoring = Level::load(path, Options().set("ignore", "Floor"));
+	CHECK(bake(ignoring, options).values<float>("visibility").size() == 3);
+	CHECK_THROWS_WITH(bake(ignoring, Options().set("radius", 1.0).set("ignore", "Wall")),
+					  Catch::Contains("ignore: found with a level that is loaded"));
+	CHECK_THROWS_WITH(bake(ignoring, Options().set("radius", 1.0).set("occluders", "Floor")),
+					  Catch::Contains("occluders: found 'Floor', expected parts of a.obj: '/Wall'"));
+}
+
 TEST_CASE("capi: numbers of any type give the same level, also misaligned", "[capi]")
 {
 	std::vector<float> numbers(kFloorAndWall.begin(), kFloorAndWall.end());

@@ -382,10 +382,10 @@ TEST_CASE("error report: its command has the options that levels are read with, 
 {
 	ErrorReportSettings settings;
 	settings.levels = {"builtin:cornell", "some folder/it's a level.obj"};
-	settings.load = {0.01, UpAxis::z, true};
+	settings.load = {{0.01, UpAxis::z, true}, {"Lamp*"}};
 	settings.camera = "by the door";
 	CHECK(errorReportCommand(settings) ==
-		  "nook report error builtin:cornell 'it'\\''s a level.obj' --unit 0.01 --up z --strict --grid normal "
+		  "nook report error builtin:cornell 'it'\\''s a level.obj' --unit 0.01 --up z --ignore 'Lamp*' --strict --grid normal "
 		  "--camera 'by the door' --size 320x180 --rays 1024 --repetitions 5 --slowest 0");
 	settings.load = {};
 	CHECK(errorReportCommand(settings).find("--unit") == std::string::npos);

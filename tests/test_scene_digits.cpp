@@ -203,7 +203,7 @@ TEST_CASE("scene: polygons and materials at map coordinates", "[scene]")
 		"mtllib a.mtl\nv 437000 5401000 120.2\nv 447000 5401000 120.2\nv 447000 5411000 120.2\nv 437000 5411000 "
 		"120.2\nf 1 2 3 4\nusemtl a b\n" +
 		mapObj();
-	const Level level = loadText(folder / "a.obj", text, {0.0, UpAxis::z}).level;
+	const Level level = loadText(folder / "a.obj", text, {{0.0, UpAxis::z}, {}}).level;
 	REQUIRE(level.triangles.size() == 14);
 	CHECK(areaOf(level) - 1e8 == Approx(0.54).epsilon(1e-6));
 	CHECK(level.material_list[level.materials.back()].alpha == 0.25);

@@ -354,7 +354,7 @@ TEST_CASE("scene: what reading finds stands in the table's order", "[scene]")
 TEST_CASE("scene: strict makes findings errors", "[scene]")
 {
 	const TemporaryFolder folder;
-	const LoadSettings strict{0.0, UpAxis::file, true};
+	const LoadSettings strict{{0.0, UpAxis::file, true}, {}};
 	CHECK_NOTHROW(loadText(folder / "a.obj", cubeObj(), strict));
 	try
 	{

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Alternative encodings in glTF, and files that are easily misread.
 #include "cube_gltf.h"
+#include "scene/load_parts.h"
 
 #include <catch2/catch.hpp>
 #include <glm/common.hpp>
@@ -344,6 +345,109 @@ TEST_CASE("scene: hidden nodes and all below them are left out", "[scene]")
 		cube.json["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = "no";
 		CHECK(cube.refusal().starts_with("3: nodes[1].extensions.KHR_node_visibility.visible: found "));
 	}
+}
+
+TEST_CASE("scene: parts are chosen by name, path, material and extras", "[scene]")
+{
+	Cube cube;
+	cube.json["materials"] = {{{"name", "wood"}}, {{"name", "glass"}}};
+	cube.json["meshes"] = {cube.json["meshes"][0], cube.json["meshes"][0]};
+	cube.json["meshes"][0]["primitives"][0]["material"] = 0;
+	cube.json["meshes"][1] = {
+		{"name", "pane"}, {"primitives", cube.json["meshes"][1]["primitives"]}, {"extras", {{"kind", "thin"}}}};
+	cube.json["meshes"][1]["primitives"][0]["material"] = 1;
+	cube.json["nodes"] = {{{"name", "Room"}, {"children", {1, 2}}, {"extras", {{"static", true}}}},
+						  {{"name", "Table"}, {"mesh", 0}},
+						  {{"name", "Window"}, {"children", {3}}},
+						  {{"name", "UCX_Sash"}, {"mesh", 1}, {"translation", {5, 0, 0}}},
+						  {{"name", "Sky.001"}, {"mesh", 0}, {"translation", {9, 0, 0}}}};
+	cube.json["scenes"][0]["nodes"] = {0, 4};
+	const LoadedLevel loaded = cube.load();
+	REQUIRE(loaded.level.triangles.size() == 36);
+	CHECK(findingsOf(loaded.diagnosis) == "collision-meshes 1 kept, skies 1 kept");
+	CHECK(loaded.diagnosis.findings[0].first == "mesh 'pane', which --ignore 'UCX_Sash' leaves out");
+	CHECK(pathOf(loaded.level, loaded.level.meshes[1]) == "/Room/Window/UCX_Sash/pane");
+	// Which of the three cubes, as 0 or 1 each; "": refused.
+	const auto chosenOf = [&](const std::vector<std::string>& patterns) -> std::string
+	{
+		try
+		{
+			const std::vector<uint8_t> chosen = chosenTriangles(loaded.level, patterns, "ignore");
+			return {static_cast<char>('0' + chosen[0]), static_cast<char>('0' + chosen[12]), static_cast<char>('0' + chosen[24])};
+		}
+		catch (const Error& error)
+		{
+			CHECK(error.code() == ExitCode::usage);
+			return "";
+		}
+	};
+	const std::vector<std::pair<std::string, std::string>> cases{{"Table", "100"},
+																 {"T*e", "100"},
+																 {"table", ""},
+																 {"Tab", ""},
+																 {"Room", "110"},
+																 {"pane", "010"},
+																 {"cube*", "101"},
+																 {"?????", "100"},
+																 {"*", "111"},
+																 {"/Room", "110"},
+																 {"/Room/*", "110"},
+																 {"/*/Table", "100"},
+																 {"/Table", ""},
+																 {"Room/Window", "010"},
+																 {"/**/pane", "010"},
+																 {"/Room/**/pane", "010"},
+																 {"/Room/*/pane", ""},
+																 {"**", "111"},
+																 {"material:wood", "101"},
+																 {"material:gl*", "010"},
+																 {"material:", ""},
+																 {"extras:static", "110"},
+																 {"extras:static=true", "110"},
+																 {"extras:static=false", ""},
+																 {"extras:kind=th*", "010"},
+																 {"extras:k*", "010"},
+																 {"wood", ""},
+																 {"/", ""},
+																 {"//", ""},
+																 {"[", ""}};
+	for (const auto& [pattern, expected] : cases)
+	{
+		INFO(pattern);
+		CHECK(chosenOf({pattern}) == expected);
+	}
+	CHECK(chosenOf({"Table", "material:glass"}) == "110");
+	CHECK(chosenOf({"Table", "none"}).empty());
+	CHECK_THROWS_WITH(chosenTriangles(loaded.level, std::vector<std::string>{"Tabel"}, "ignore"),
+					  "ignore: found 'Tabel', expected parts of a.gltf: '/Room/Table/cube', '/Room/Window/UCX_Sash/pane', "
+					  "'/Sky.001/cube'");
+	CHECK_THROWS_WITH(chosenTriangles(loaded.level, std::vector<std::string>{"extras:a"}, "ignore"),
+					  "ignore: found 'extras:a', expected parts of a.gltf: 'extras:static=true', 'extras:kind=thin'");
+}
+
+TEST_CASE("scene: a level without ignored parts is that of a file without them", "[scene]")
+{
+	Cube cube;
+	cube.json["nodes"] = {{{"name", "a"}, {"mesh", 0}}, {{"name", "b"}, {"mesh", 0}, {"translation", {1, 0, 0}}}};
+	cube.json["scenes"][0]["nodes"] = {0, 1};
+	const TemporaryFolder folder;
+	const std::string path = folder / "a.gltf";
+	writeFile(path, gltfText(cube.json, cube.buffer));
+	LoadSettings settings;
+	settings.ignore = {"b"};
+	const LoadedLevel ignoring = loadLevel(path, settings, {});
+	const std::vector<GltfPlace> places = loadPlaces(path, settings, ignoring.level, {}, {});
+	const std::vector<GltfPlace> receiving = loadPlaces(path, {}, loadLevel(path, {}, {}).level, std::vector<std::string>{"b"}, {});
+	settings.ignore = {"b", "a"};
+	CHECK_THROWS_WITH(loadLevel(path, settings, {}), "a.gltf: ignore: found every part, expected one that is left");
+	cube.json["scenes"][0]["nodes"] = {0};
+	const LoadedLevel without = cube.load();
+	CHECK(ignoring.level.positions == without.level.positions);
+	CHECK(ignoring.level.triangles == without.level.triangles);
+	REQUIRE(places.size() == 1);
+	CHECK((places[0].node == 0 && places[0].vertices.size() == 8));
+	REQUIRE(receiving.size() == 1);
+	CHECK((receiving[0].node == 1 && receiving[0].vertices.size() == 8 && receiving[0].vertices[0].second >= 8));
 }
 
 TEST_CASE("scene: instances that have attributes of their own alone", "[scene]")

@@ -146,7 +146,7 @@ TEST_CASE("scene: FBX files say their unit and their axes", "[scene]")
 	// Metres, z up: (x, y, z) becomes (x, z, -y).
 	checkCube(loadText(folder / "b.fbx", cubeFbx(true, 100.0)), {1.0, 3.0, -3.0});
 	// Options take precedence.
-	checkCube(loadText(folder / "c.fbx", cubeFbx(true, 100.0), {0.5, UpAxis::y, false}), {0.5, 1.0, 1.5}, 0.5);
+	checkCube(loadText(folder / "c.fbx", cubeFbx(true, 100.0), {{0.5, UpAxis::y, false}, {}}), {0.5, 1.0, 1.5}, 0.5);
 }
 
 TEST_CASE("scene: unit and up-axis of files that do not say them", "[scene]")
@@ -154,13 +154,13 @@ TEST_CASE("scene: unit and up-axis of files that do not say them", "[scene]")
 	const TemporaryFolder folder;
 	std::string text = cubeObj();
 	text.insert(text.find("f "), "v 0 0 9\nv 1 0 9\nv 0 1 9\nf 9 10 11\n");
-	const Level z_up = loadText(folder / "a.obj", text, {0.1, UpAxis::z, false}).level;
+	const Level z_up = loadText(folder / "a.obj", text, {{0.1, UpAxis::z, false}, {}}).level;
 	checkBounds(z_up, {0.0, 0.0, -0.1}, {0.1, 0.9, 0.0});
-	const Level x_up = loadText(folder / "a.obj", text, {1.0, UpAxis::x, false}).level;
+	const Level x_up = loadText(folder / "a.obj", text, {{1.0, UpAxis::x, false}, {}}).level;
 	checkBounds(x_up, {-1.0, 0.0, 0.0}, {0.0, 1.0, 9.0});
 	for (const UpAxis up : {UpAxis::x, UpAxis::y, UpAxis::z})
 	{
-		CHECK(volumeOf(loadText(folder / "b.obj", cubeObj(), {1.0, up, false}).level) == Approx(1.0));
+		CHECK(volumeOf(loadText(folder / "b.obj", cubeObj(), {{1.0, up, false}, {}}).level) == Approx(1.0));
 	}
 }
 
@@ -240,7 +240,7 @@ TEST_CASE("scene: cameras stand and look as the file says", "[scene]")
 	CHECK(level.cameras[1].name == "camera 1");
 	CHECK(level.cameras[1].lens.orthographic);
 	CHECK(level.cameras[1].lens.half_height_m == 2.0);
-	const Level turned = loadText(folder / "a.gltf", gltfText(json), {0.01, UpAxis::z, false}).level;
+	const Level turned = loadText(folder / "a.gltf", gltfText(json), {{0.01, UpAxis::z, false}, {}}).level;
 	checkPoint(glm::dvec3(turned.cameras[0].world_from_camera[3]), {0.13, 0.09, -0.06});
 	checkPoint(glm::dvec3(turned.cameras[0].world_from_camera[1]), {0.0, 0.0, -1.0});
 	CHECK(turned.cameras[1].lens.half_height_m == Approx(0.02));

@@ -167,4 +167,27 @@ head -c 1000 kept_v.glb >kept_short.glb
 fails 3 'kept_short.glb' info kept_short.glb
 fails 1 '--unit: found with another' info kept_v.glb --unit 2
 
+# Parts: only occluders get volumes, and those that darken no receiver go.
+{
+	printf 'o Floor\nv -2 0 2\nv 2 0 2\nv 2 0 -2\nv -2 0 -2\nf 1 2 3 4\no Wall\nv -2 0 -1\nv 2 0 -1\nv 2 2 -1\nv -2 2 -1\nf 5 6 7 8\n'
+	printf 'o Shelf\nv 8 0 0\nv 9 0 0\nv 9 1 0\nv 8 1 0\nv 8 0 0.1\nv 9 0 0.1\nv 9 1 0.1\nv 8 1 0.1\nf 9 10 11 12\nf 13 14 15 16\n'
+} >kept_parts.obj
+# polygons EXPECTED ARGUMENTS: of the file.
+polygons()
+{
+	expected=$1
+	shift
+	works '' volumes kept_parts.obj --distance 1 --extent none --json - "$@"
+	checks=$((checks + 1))
+	[ "$(field polygons)" = "$expected" ] || problem "volumes $*: found $(field polygons) polygons, expected $expected"
+}
+polygons 3
+polygons 1 --occluders Wall
+polygons 2 --occluders Floor,Wall
+polygons 1 --receivers Shelf
+polygons 2 --receivers Floor,Wall
+polygons 1 --occluders Wall --receivers Floor
+polygons 2 --ignore Shelf
+fails 1 '--receivers: found with --keep-unlit' volumes kept_parts.obj --distance 1 --receivers Wall --keep-unlit -o v.glb
+fails 1 "--receivers: found 'Wal'" volumes kept_parts.obj --distance 1 --receivers Wal -o v.glb
 finish

@@ -498,7 +498,13 @@ nook_status called(Verb (*add)(CLI::App& app), const nook_options* options, nook
 		require(result, "result");
 		Prepared prepared;
 		prepare(prepared);
-		runCalled(add, prepared, GivenOptions(options), result);
+		const GivenOptions given(options);
+		if (prepared.level != nullptr && std::any_of(given.words.begin(), given.words.end(),
+													 [](const std::string& word) { return word.starts_with("--ignore="); }))
+		{
+			refuse("ignore: found with a level that is loaded, expected it where the level is");
+		}
+		runCalled(add, prepared, given, result);
 	};
 	return guarded(body);
 }

@@ -156,6 +156,20 @@ Bounds boxOf(const std::string& option, const std::string& text)
 	return {{(*numbers)[0], (*numbers)[1], (*numbers)[2]}, {(*numbers)[3], (*numbers)[4], (*numbers)[5]}};
 }
 
+OptionRow partsRow(const std::string& name, std::vector<std::string>& patterns, const std::string& help, OptionRules rules)
+{
+	const auto take = [&patterns](const std::string& option, const std::string& text)
+	{
+		const std::vector<std::string> parts = partsOf(text);
+		if (parts.empty() || std::find(parts.begin(), parts.end(), "") != parts.end())
+		{
+			refuseValue(option, text, "patterns of parts, commas between them: Lamp*,material:Glass");
+		}
+		patterns.insert(patterns.end(), parts.begin(), parts.end());
+	};
+	return {name, takesEach("PARTS", take), help, std::move(rules)};
+}
+
 void addLoadOptions(CLI::App& app, LoadSettings& load)
 {
 	addOptions(
@@ -172,6 +186,9 @@ void addLoadOptions(CLI::App& app, LoadSettings& load)
 			   "Skinned and morphed meshes as the level's file shows them, or in their rest pose (default: file)"},
 			  {"--tr", takesChoice(kTrMeanings, load.tr),
 			   "Meaning of Tr in the level's MTL files, where there is no d (default: auto, transparency but that 1 is opaque)"}});
+	addOptions(app, {partsRow("--ignore", load.ignore,
+							  "Parts to leave out, by name (Lamp*), path (/Room/**/Lamp), material:NAME or extras:KEY=VALUE; "
+							  "commas between several")});
 }
 
 void addLevelOptions(CLI::App& app, LevelOptions& options)

@@ -20,8 +20,8 @@ namespace nook
 {
 
 inline constexpr const char* kLevelHelp = "A level (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME";
-inline constexpr std::array<std::string_view, 7> kLoadOptions{"--unit",          "--up",   "--strict", "--max-texels",
-															  "--allow-outside", "--pose", "--tr"};
+inline constexpr std::array<std::string_view, 8> kLoadOptions{"--unit",          "--up",   "--strict", "--max-texels",
+															  "--allow-outside", "--pose", "--tr",     "--ignore"};
 
 struct LevelOptions
 {
@@ -31,6 +31,9 @@ struct LevelOptions
 
 // LEVEL and kLoadOptions.
 void addLevelOptions(CLI::App& app, LevelOptions& options);
+
+// A list of patterns of parts of the level (chosenTriangles), after the option's name.
+OptionRow partsRow(const std::string& name, std::vector<std::string>& patterns, const std::string& help, OptionRules rules = {});
 
 // kLoadOptions alone, for verbs whose file may be something else.
 void addLoadOptions(CLI::App& app, LoadSettings& load);

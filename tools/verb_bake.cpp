@@ -60,6 +60,8 @@ struct BakeOptions
 	BakeTarget target = BakeTarget::visibility;
 	std::string attribute; // that the target names
 	BakeInstances instances = BakeInstances::separate;
+	std::vector<std::string> occluders;
+	std::vector<std::string> receivers;
 	const CLI::App* app = nullptr;
 	Outputs outputs;
 };
@@ -156,6 +158,11 @@ void declare(CLI::App& app, BakeOptions& options)
 		  {.needs = {volumes}}},
 		 directionsRow(options.directions,
 					   {.needs = {volumes, {"--volumes-by " + maskMethod(), maskMethod(), "with another method"}}}),
+		 partsRow("--occluders", options.occluders,
+				  "The only parts of the level that rays meet, chosen as by --ignore (default: all)"),
+		 partsRow("--receivers", options.receivers,
+				  "The only parts that get values, chosen as by --ignore; the others stay as they are (default: all)",
+				  ofVertices({{"--max-error", "one of them, since the file of split triangles has all parts"}})),
 		 {"--texture", takesWhole(options.texture_px, kLeastTexture_px, kMostTexture_px),
 		  "Texels across of an occlusion texture, in place of values at vertices; by the level's second texture coordinates or by "
 		  "the first",
@@ -241,6 +248,13 @@ void addSettings(Facts& facts, const BakeOptions& options)
 		facts.number("max_error", settings.max_error);
 		facts.whole("max_vertices", settings.max_vertices);
 	}
+	for (const auto& [name, patterns] : {std::pair("occluders", &options.occluders), {"receivers", &options.receivers}})
+	{
+		if (!patterns->empty())
+		{
+			facts.texts(name, *patterns);
+		}
+	}
 }
 
 // How far the bake is from rays; `where` they were asked.
@@ -297,7 +311,21 @@ struct BakeInput
 	Tracer tracer;
 	std::vector<glm::uvec3> triangles; // as the file has them, if some were turned for the bake
 	bool in_place = false;             // the level's own glTF file takes the values
+	std::vector<uint8_t> receivers;    // 1 for each triangle that gets values; empty: all
+	std::optional<LevelPart> part;     // these triangles
 };
+
+// Values per vertex of the level: NaN where it receives none.
+template <class Value> std::vector<Value> spread(const BakeInput& input, const std::vector<Value>& values)
+{
+	if (!input.part || values.empty())
+	{
+		return values;
+	}
+	const std::vector<uint32_t>& vertices = input.part->vertices;
+	return listOf(vertices.size(), [&](std::size_t v)
+				  { return vertices[v] == UINT32_MAX ? Value(std::numeric_limits<float>::quiet_NaN()) : values[vertices[v]]; });
+}
 
 GltfFile fileOf(const BakeOptions& options)
 {
@@ -315,6 +343,7 @@ GltfBake bakeOf(const BakeOptions& options)
 	bake.attribute = options.attribute;
 	bake.instances = options.instances;
 	bake.color = options.color;
+	bake.others_stay = !options.level.load.ignore.empty() || !options.receivers.empty();
 	bake.kind = options.volumes.empty() ? BakedKind::visibility
 				: options.mask          ? BakedKind::mask_volume_difference
 										: BakedKind::volume_difference;
@@ -352,12 +381,21 @@ GltfBaked write(const BakeOptions& options, const BakeInput& input, const Level&
 	std::optional<GltfFile> file;
 	if (input.in_place)
 	{
-		places = loadPlaces(options.level.level, options.level.load, level, how);
+		places = loadPlaces(options.level.level, options.level.load, input.tracer.level(), options.receivers, how);
 		file = fileOf(options);
 	}
 	else
 	{
-		file = openGlb(levelGlb(level, kProgram, places), level.name);
+		file = openGlb(levelGlb(input.part ? input.tracer.level() : level, kProgram, places), level.name);
+		std::erase_if(places, [&input](const GltfPlace& place) { return input.part && input.receivers[place.triangle] == 0; });
+	}
+	for (std::size_t i = 0; input.part && i < places.size(); ++i)
+	{
+		for (auto& [of_file, of_level] : places[i].vertices)
+		{
+			of_level = input.part->vertices[of_level];
+		}
+		std::erase_if(places[i].vertices, [](const auto& vertex) { return vertex.second == UINT32_MAX; });
 	}
 	GltfBaked baked = bakeInto(*file, places, bake, outputs);
 	for (std::size_t i = 0, next = 0; i < options.outputs.files.size(); ++i)
@@ -420,16 +458,18 @@ void turnBack(const BakeInput& input, const Level& level, VertexBake& bake)
 
 Made makeVertices(const BakeOptions& options, const BakeInput& input, Facts& facts, const RunSettings& how)
 {
-	const BakeSettings& settings = options.settings;
+	BakeSettings settings = options.settings;
+	const Level& receiving = input.part ? input.part->level : input.tracer.level();
+	settings.receivers = &receiving;
 	VertexBake bake = bakeVertices(input.tracer, settings, how);
 	std::optional<Level> turned;
 	if (!input.triangles.empty())
 	{
-		turnBack(input, input.tracer.level(), bake);
-		turned = input.tracer.level();
+		turnBack(input, receiving, bake);
+		turned = receiving;
 		turned->triangles = input.triangles;
 	}
-	const Level& level = bake.refined ? *bake.refined : turned ? *turned : input.tracer.level();
+	const Level& level = bake.refined ? *bake.refined : turned ? *turned : receiving;
 	Made made;
 	std::optional<GltfBaked> baked;
 	if (!isShare(how))
@@ -448,10 +488,16 @@ Made makeVertices(const BakeOptions& options, const BakeInput& input, Facts& fac
 	{
 		return {};
 	}
-	give<float>("visibility", bake.visibility, {bake.visibility.size()});
-	give<float>("back", bake.back, {bake.back.size()});
-	give<float>("bent", bake.bent, {bake.bent.size(), 3});
-	give<float>("bent_back", bake.bent_back, {bake.bent_back.size(), 3});
+	for (const auto& [name, values] : {std::pair("visibility", &bake.visibility), {"back", &bake.back}})
+	{
+		const std::vector<float> all = spread(input, *values);
+		give<float>(name, all, {all.size()});
+	}
+	for (const auto& [name, values] : {std::pair("bent", &bake.bent), {"bent_back", &bake.bent_back}})
+	{
+		const std::vector<glm::vec3> all = spread(input, *values);
+		give<float>(name, all, {all.size(), 3});
+	}
 	if (bake.refined)
 	{
 		give<double>("positions", level.positions, {level.positions.size(), 3});
@@ -607,7 +653,25 @@ void run(BakeOptions& options, VerbProgress& progress)
 	{
 		triangles.clear();
 	}
-	const BakeInput input{Tracer(loaded.level, how), std::move(triangles), in_place};
+	const std::vector<uint8_t> occluders = chosenTriangles(loaded.level, options.occluders, "occluders");
+	BakeInput input{Tracer(loaded.level, how, nullptr, occluders),
+					std::move(triangles),
+					in_place,
+					chosenTriangles(loaded.level, options.receivers, "receivers"),
+					{}};
+	if (!input.receivers.empty())
+	{
+		input.part = partOf(loaded.level, input.receivers, how.threads);
+		std::vector<glm::uvec3> of_part;
+		for (std::size_t t = 0; t < input.triangles.size(); ++t)
+		{
+			if (input.receivers[t] != 0)
+			{
+				of_part.push_back(input.part->triangle(input.triangles[t]));
+			}
+		}
+		input.triangles = std::move(of_part);
+	}
 	Facts facts = verbFacts("bake");
 	addLevelFacts(facts, loaded);
 	facts.whole("turned_triangles", turned);

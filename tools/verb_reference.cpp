@@ -37,6 +37,7 @@ struct ReferenceOptions
 	ReferenceSettings settings;
 	std::optional<double> falloff_u_m;
 	std::optional<int> rays;
+	std::vector<std::string> occluders;
 	Outputs outputs;
 };
 
@@ -72,6 +73,9 @@ void declare(CLI::App& app, ReferenceOptions& options)
 		  "Metres by which points may be off the level's surface beside rounding, as levels of detail are (default 0): rays begin "
 		  "that much above them",
 		  excludes("--from depth", "none, since no ray begins anywhere")},
+		 partsRow("--occluders", options.occluders,
+				  "The only parts of the level that rays meet, chosen as by --ignore (default: all)",
+				  excludes("--from depth", "none, since no ray meets the level")),
 		 seedRow(settings.seed)});
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kAllFormats);
@@ -172,6 +176,10 @@ void addSettings(Facts& facts, const ReferenceOptions& options)
 	{
 		facts.number("lift_m", settings.lift_m);
 	}
+	if (!options.occluders.empty())
+	{
+		facts.texts("occluders", options.occluders);
+	}
 	facts.whole("seed", settings.seed);
 }
 
@@ -240,7 +248,8 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 		loaded = levelOf(options.level, options.load, run_settings);
 		checkRead(options.outputs, loaded->level.files);
 		const std::optional<Vicinity> near = image ? reachOf(loaded->level, gbuffer, options.settings) : std::nullopt;
-		tracer.emplace(loaded->level, run_settings, near ? &*near : nullptr);
+		tracer.emplace(loaded->level, run_settings, near ? &*near : nullptr,
+					   chosenTriangles(loaded->level, options.occluders, "occluders"));
 		read.insert(read.end(), loaded->level.files.begin(), loaded->level.files.end());
 		addLevelFacts(facts, *loaded);
 	}

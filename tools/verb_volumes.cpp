@@ -35,6 +35,8 @@ struct VolumeOptions
 	CurveMeasure measure = CompensateSettings{}.measure; // that --compensate fits to
 	bool no_drop = false;
 	VolumeFileSettings file;
+	std::vector<std::string> occluders;
+	std::vector<std::string> receivers;
 	Outputs outputs;
 };
 
@@ -164,7 +166,13 @@ void declare(CLI::App& app, VolumeOptions& options)
 					 {"--ray-distance", takesNumber(settings.ray_distance_m, 1e-6, 1e10, "M"),
 					  "Radius of the ray-traced reference with linear falloff that they stand for, metres (default: distance / "
 					  "0.6, or fitted by "
-					  "--compensate)"}});
+					  "--compensate)"},
+					 partsRow("--occluders", options.occluders,
+							  "The only parts of the level that get volumes, chosen as by --ignore (default: all)"),
+					 partsRow("--receivers", options.receivers,
+							  "The only parts to darken, chosen as by --ignore: volumes that darken none of them are dropped "
+							  "(default: all)",
+							  excludes("--no-drop or --keep-unlit"))});
 	addOptions(app, occluderRows(settings.occluders, settings));
 	addOptions(app, dropRows(settings.drop, options.no_drop));
 	addOptions(
@@ -258,7 +266,7 @@ void run(VolumeOptions& options, VerbProgress& progress)
 	}
 	options.settings.written_bytes = writtenBytes(options.file.layout);
 	checkOutputs(options.outputs, kVolumeFormats, {options.level.level});
-	const VolumeSettings& settings = options.settings;
+	VolumeSettings& settings = options.settings;
 	const RunSettings how = progress.start("volumes", options.outputs.threads, options.outputs.progress);
 	Times times;
 	const std::shared_ptr<const LoadedLevel> shared = levelOf(options.level.level, options.level.load, how);
@@ -266,6 +274,13 @@ void run(VolumeOptions& options, VerbProgress& progress)
 	checkRead(options.outputs, loaded.level.files);
 	times.step("level");
 	addInputs(loaded.level.files, how);
+	const std::vector<uint8_t> occluding = chosenTriangles(loaded.level, options.occluders, "occluders");
+	std::optional<LevelPart> part;
+	if (!occluding.empty())
+	{
+		settings.occluding = &part.emplace(partOf(loaded.level, occluding, how.threads)).level;
+	}
+	settings.drop.receivers = chosenTriangles(loaded.level, options.receivers, "receivers");
 	BuiltVolumes built = buildVolumes(loaded.level, settings, how);
 	if (isShare(how))
 	{

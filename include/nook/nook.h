@@ -113,7 +113,8 @@ NOOK_API nook_status nook_options_progress(nook_options *options, nook_progress 
  * null, v grows downward. Options: strict, two-sided, threads. */
 NOOK_API nook_status nook_level_create(const nook_array *positions, const nook_array *triangles, const nook_array *normals,
 									   const nook_array *uvs, const nook_options *options, nook_level **level);
-/* A .gltf, .glb, .obj, .fbx, .ply or .stl file, or "builtin:NAME". Options: unit, up, strict, max-texels, allow-outside, pose, tr. */
+/* A .gltf, .glb, .obj, .fbx, .ply or .stl file, or "builtin:NAME". Options: unit, up, strict, max-texels, allow-outside, pose, tr,
+ * ignore. */
 NOOK_API nook_status nook_level_load(const char *path, const nook_options *options, nook_level **level);
 /* Arrays positions, triangles, normals, uvs; facts: what was found in the level. */
 NOOK_API nook_status nook_level_describe(const nook_level *level, nook_result **result);

@@ -52,7 +52,7 @@ std::vector<ReferencePoint> pointsOf(const Level& level, const Unknowns& unknown
 
 VertexBake atPoints(const Tracer& tracer, const Unknowns& unknowns, const BakeSettings& settings, const RunSettings& run)
 {
-	const Level& level = tracer.level();
+	const Level& level = surfaceOf(tracer, settings);
 	const std::vector<ReferencePoint> points = pointsOf(level, unknowns);
 	ReferenceSettings how = raysOf(settings, settings.rays, settings.seed);
 	how.measure = settings.bent ? ReferenceMeasure::bent : ReferenceMeasure::obscurance;
@@ -78,7 +78,7 @@ VertexBake atPoints(const Tracer& tracer, const Unknowns& unknowns, const BakeSe
 
 VertexBake overSurface(const Tracer& tracer, const Unknowns& unknowns, const BakeSettings& settings, const RunSettings& run)
 {
-	const Level& level = tracer.level();
+	const Level& level = surfaceOf(tracer, settings);
 	const std::vector<double> areas = areasOf(level);
 	const int rays = std::min(settings.rays, kRaysOfPoint);
 	const double all = static_cast<double>(unknowns.count) * settings.rays;
@@ -139,7 +139,7 @@ VertexBake bakeVertices(const Tracer& tracer, const BakeSettings& settings, cons
 	{
 		return refineBake(tracer, settings, run);
 	}
-	const Unknowns unknowns = unknownsOf(tracer.level(), settings.sides);
+	const Unknowns unknowns = unknownsOf(surfaceOf(tracer, settings), settings.sides);
 	VertexBake bake =
 		settings.fit == BakeFit::points ? atPoints(tracer, unknowns, settings, run) : overSurface(tracer, unknowns, settings, run);
 	bake.unknowns = unknowns.count;

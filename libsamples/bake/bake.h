@@ -50,7 +50,8 @@ struct BakeSettings
 	std::size_t max_vertices = 2'000'000;       // limit for the subdivision
 	double few = 0.0; // [0, 1): stop earlier if less than this fraction of the triangles could be split further
 	BakeSides sides = BakeSides::separate;
-	bool bent = false; // also bake bent normals (ReferenceMeasure::bent)
+	bool bent = false;                // also bake bent normals (ReferenceMeasure::bent)
+	const Level* receivers = nullptr; // the part of the tracer's level that gets values, at vertices; null: all of it
 
 	// Visibility that another method draws at a point with a unit normal: the bake then stores the difference from it, −1 to 1.
 	// Requires BakeFit::surface without bent normals. Called from any thread.

@@ -27,6 +27,12 @@ struct SurfaceSample
 	bool shut = false;    // in a gap so narrow that hardly any ray escapes
 };
 
+// The triangles that get values.
+inline const Level& surfaceOf(const Tracer& tracer, const BakeSettings& settings)
+{
+	return settings.receivers != nullptr ? *settings.receivers : tracer.level();
+}
+
 // Area of each triangle in square metres.
 std::vector<double> areasOf(const Level& level);
 

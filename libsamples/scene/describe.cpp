@@ -17,6 +17,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <vector>
 
 namespace nook
@@ -63,6 +64,20 @@ double areaOf(const Level& level)
 		twice += glm::length(twiceAreaOf(level, t));
 	}
 	return 0.5 * twice;
+}
+
+// Paths of parts as patterns may name them, each once.
+void addParts(const Level& level, Facts& facts)
+{
+	constexpr std::size_t kMostParts = 1000;
+	std::set<std::string> paths;
+	for (std::size_t i = 0; i < level.meshes.size() && paths.size() < kMostParts; ++i)
+	{
+		paths.insert(pathOf(level, level.meshes[i]));
+	}
+	facts.texts("parts", {paths.begin(), paths.end()});
+	facts.line("parts: " + std::string(paths.size() < kMostParts ? "" : "at least ") + std::to_string(paths.size()) + ", as " +
+			   oneLine(*paths.begin()));
 }
 
 // Lists only materials that let light through, and counts the others.
@@ -422,6 +437,7 @@ void describeLevel(const LoadedLevel& loaded, int threads, Facts& facts)
 	const double area = areaOf(level);
 	facts.number("area_m2", area);
 	facts.line("surface: " + roundedText(area, 6) + " m2");
+	addParts(level, facts);
 	addMaterials(level, facts);
 	addCameras(level, facts);
 	std::vector<Facts> items;

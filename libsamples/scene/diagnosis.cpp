@@ -347,12 +347,9 @@ Shape shapeOf(const Level& level, const glm::uvec3& triangle)
 class Cleaner
 {
 public:
-	Cleaner(Level& level, const RunSettings& run, std::vector<glm::vec2>* more)
-		: m_level(level), m_threads(run.threads), m_more(more)
-	{
-	}
+	Cleaner(Level& level, const RunSettings& run) : m_level(level), m_threads(run.threads) {}
 
-	Diagnosis run()
+	Diagnosis run(std::vector<uint32_t>* before)
 	{
 		m_fates.resize(m_level.triangles.size());
 		shapes();
@@ -361,7 +358,7 @@ public:
 		edges();
 		emptyMeshes();
 		vertices();
-		compactLevel(m_level, marked([&](std::size_t i) { return m_fates[i] == Fate::kept; }), m_threads, m_more);
+		compactLevel(m_level, marked([&](std::size_t i) { return m_fates[i] == Fate::kept; }), m_threads, before);
 		return std::move(m_diagnosis);
 	}
 
@@ -623,7 +620,6 @@ private:
 
 	Level& m_level;
 	int m_threads;
-	std::vector<glm::vec2>* m_more;
 	Diagnosis m_diagnosis;
 	std::vector<Fate> m_fates;         // per triangle
 	std::vector<glm::uvec3> m_welded;  // per triangle, with each vertex replaced by the first at its position
@@ -633,12 +629,11 @@ private:
 
 } // namespace
 
-Diagnosis cleanLevel(Level& level, const RunSettings& run, std::vector<glm::vec2>* more)
+Diagnosis cleanLevel(Level& level, const RunSettings& run, std::vector<uint32_t>* before)
 {
 	assert(level.normals.size() == level.positions.size() && level.uvs.size() == level.positions.size());
 	assert(level.materials.size() == level.triangles.size());
-	assert(more == nullptr || more->size() == level.positions.size());
-	Diagnosis diagnosis = Cleaner(level, run, more).run();
+	Diagnosis diagnosis = Cleaner(level, run).run(before);
 	addFindings(diagnosis, {});
 	return diagnosis;
 }

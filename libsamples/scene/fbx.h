@@ -178,6 +178,7 @@ SinCos sinCosOfDegrees(double degrees);
 struct FbxPlace
 {
 	std::size_t object = 0;    // a Model
+	std::size_t parent = 0;    // a Model; 0: none
 	glm::dmat4 world{1.0};     // in the file's units and axes
 	glm::dmat4 geometric{1.0}; // additional transform of its meshes only
 	bool in_scene = false;     // below the root

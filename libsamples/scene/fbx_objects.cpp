@@ -219,6 +219,7 @@ private:
 
 		FbxPlace& place = m_places.emplace_back();
 		place.object = node;
+		place.parent = m_parents[node] > 1 ? m_parents[node] - 1 : 0; // 1 is the root
 		place.world = frame.world;
 		place.geometric = matrixOf(scaled(turnOf(vector("GeometricRotation", 0.0)), vector("GeometricScaling", 1.0)),
 								   vector("GeometricTranslation", 0.0));

@@ -443,6 +443,15 @@ private:
 		const bool is_shared = m_uses[instance.geometry] > 1;
 		m_name = geometry.name.empty() ? node.name : is_shared ? node.name + "/" + geometry.name : geometry.name;
 		m_name = m_name.empty() ? "mesh " + std::to_string(instance.geometry) : m_name;
+		m_path.clear();
+		for (const FbxPlace* place = instance.place; place != nullptr; place = m_worlds[place->parent])
+		{
+			m_path.insert(m_path.begin(), m_objects[place->object].name);
+		}
+		if (!geometry.name.empty() && geometry.name != node.name)
+		{
+			m_path.push_back(geometry.name);
+		}
 		if (const auto known = m_shared.find(instance.geometry); known != m_shared.end())
 		{
 			m_mesh = known->second;
@@ -561,6 +570,11 @@ private:
 		}
 		m_to.value(MeshHead{static_cast<uint32_t>(material), false});
 		m_to.text(m_name);
+		m_to.value(static_cast<uint32_t>(m_path.size()));
+		for (const std::string& name : m_path)
+		{
+			m_to.text(name);
+		}
 		m_to.values(m_positions);
 		m_to.values(m_normals);
 		m_to.values(m_uvs);
@@ -625,6 +639,7 @@ private:
 
 	// The current instance, with points in world space.
 	std::string m_name;
+	std::vector<std::string> m_path; // names from the root to the mesh
 	FbxMesh m_mesh;
 	bool m_mirrored = false;
 	std::vector<glm::dmat3> m_turns;  // normal transforms: one, or one per point

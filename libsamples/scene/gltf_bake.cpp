@@ -361,6 +361,25 @@ private:
 		return made;
 	}
 
+	// The meshes of nodes that have no values.
+	std::set<std::size_t> meshesOfOthers(const std::vector<MeshUnit>& units)
+	{
+		std::set<std::size_t> nodes;
+		for (const MeshUnit& unit : units)
+		{
+			nodes.insert(unit.nodes.begin(), unit.nodes.end());
+		}
+		std::set<std::size_t> meshes;
+		for (std::size_t i = 0; i < items("nodes").size(); ++i)
+		{
+			if (!nodes.contains(i))
+			{
+				meshes.insert(numberIn(items("nodes")[i], "mesh"));
+			}
+		}
+		return meshes;
+	}
+
 	// Gives the primitives their accessors, in copies of meshes where a mesh has several sets of values.
 	void addMeshes(const std::vector<MeshUnit>& units, GltfBaked& made)
 	{
@@ -370,7 +389,7 @@ private:
 			originals.try_emplace(unit.mesh, items("meshes")[unit.mesh]);
 		}
 		std::map<std::pair<std::size_t, std::map<std::size_t, std::size_t>>, std::size_t> known;
-		std::set<std::size_t> used;
+		std::set<std::size_t> used = m_bake.others_stay && m_width > 0 ? meshesOfOthers(units) : std::set<std::size_t>();
 		for (const MeshUnit& unit : units)
 		{
 			const auto [at, is_new] = known.try_emplace({unit.mesh, unit.groups}, unit.mesh);

@@ -96,6 +96,7 @@ struct GltfBake : GlbBake
 	std::string attribute; // of BakeTarget::texcoord and custom: TEXCOORD_2, _AO
 	BakeInstances instances = BakeInstances::separate;
 	std::optional<uint32_t> uv_set; // coordinates in the file that `png` uses, in place of `uvs`
+	bool others_stay = false;       // nodes without a place keep their meshes without values
 	nlohmann::ordered_json record;  // asset.extras.nook: what was baked and how, "to" for the target; null: none
 };
 

@@ -185,6 +185,7 @@ struct PlacedNode
 	glm::dmat4 world{1.0};
 	std::optional<std::size_t> instance; // instance number
 	bool has_mesh = true;                // false: the node is hidden, or only its instances have the mesh
+	std::optional<std::size_t> parent{}; // a node
 };
 
 // The node's local transform.

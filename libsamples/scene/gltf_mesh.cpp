@@ -277,6 +277,7 @@ private:
 			}
 		}
 		m_uses.resize(m_meshes.size(), 0);
+		m_parts.resize(m_root.count("nodes"), -1);
 	}
 
 	// Counts each once, however often its mesh is placed: indices for strips and fans, else triangles.
@@ -343,8 +344,36 @@ private:
 		return extras != item.end() && extras->is_object() && extras->contains(mark) && (*extras)[mark] == true;
 	}
 
+	int addPart(const JsonValue& item, int parent)
+	{
+		PartNode& part = m_level.nodes.emplace_back(PartNode{item.name(), parent, {}});
+		const nlohmann::json extras = item.value->value("extras", nlohmann::json());
+		for (auto at = extras.begin(); extras.is_object() && at != extras.end(); ++at)
+		{
+			part.extras.push_back(at.key() + "=" + (at->is_string() ? at->get<std::string>() : at->dump()));
+		}
+		return static_cast<int>(m_level.nodes.size()) - 1;
+	}
+
+	// Adds a node to the level's tree, and its mesh unless nothing distinguishes them.
+	void addParts(const PlacedNode& node)
+	{
+		const JsonValue item = m_root.item("nodes", node.index);
+		m_parts[node.index] = addPart(item, node.parent ? m_parts[*node.parent] : -1);
+		m_mesh_part = m_parts[node.index];
+		if (const std::optional<std::size_t> index = item.index("mesh", m_meshes.size()))
+		{
+			const JsonValue mesh = m_root.item("meshes", *index);
+			m_mesh_part = mesh.name() != item.name() || mesh.has("extras") ? addPart(mesh, m_mesh_part) : m_mesh_part;
+		}
+	}
+
 	void place(const PlacedNode& node)
 	{
+		if (!node.instance)
+		{
+			addParts(node);
+		}
 		const std::optional<std::size_t> mesh = meshOf(node);
 		if (!mesh)
 		{
@@ -360,6 +389,7 @@ private:
 			made.first_triangle = m_level.triangles.size();
 			made.around = isMarked(node, "nook_around");
 			made.closed = isMarked(node, "nook_closed");
+			made.node = m_mesh_part;
 			m_tallies["points-or-lines"].add("mesh '" + made.name + "'", primitive.elementCount());
 			if (m_file.second_set == kPlacesSet && primitive.triangleCount() > 0)
 			{
@@ -367,6 +397,7 @@ private:
 										   node.instance,
 										   static_cast<std::size_t>(&primitive - m_meshes[*mesh].data()),
 										   primitive.positions->count(),
+										   made.first_triangle,
 										   {}});
 			}
 			triangles(primitive, m_world_from_file * node.world, pose);
@@ -486,7 +517,6 @@ private:
 		if (m_file.second_set == kPlacesSet)
 		{
 			m_source.places.back().vertices.emplace_back(static_cast<uint32_t>(vertex), m_slot[vertex]);
-			m_source.second_uvs.emplace_back(m_slot[vertex] >> 14U, m_slot[vertex] & 0x3fffU);
 		}
 		else if (m_file.second_set)
 		{
@@ -519,6 +549,8 @@ private:
 	std::map<std::size_t, GltfValues> m_values; // of the used accessors
 	std::vector<std::vector<Primitive>> m_meshes;
 	std::vector<std::size_t> m_uses; // of each mesh
+	std::vector<int> m_parts;        // of each node: its index in the level's tree
+	int m_mesh_part = -1;            // that of the current node's mesh
 	SentTallies m_tallies;           // findings
 
 	std::size_t m_default_material; // for primitives without a material

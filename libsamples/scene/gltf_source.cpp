@@ -100,15 +100,19 @@ public:
 		std::vector<PlacedNode> placed;
 		std::vector<PlacedNode> open;
 		std::size_t left = kMaxInstances;
-		const auto push = [&](const std::vector<std::size_t>& indices, const glm::dmat4& parent, bool hidden)
+		const auto push = [&](const std::vector<std::size_t>& indices, const PlacedNode* parent, bool hidden)
 		{
 			for (auto at = indices.rbegin(); at != indices.rend(); ++at)
 			{
-				open.push_back({*at, parent, {}, !hidden});
+				open.push_back({*at, parent != nullptr ? parent->world : glm::dmat4(1.0), {}, !hidden, {}});
+				if (parent != nullptr)
+				{
+					open.back().parent = parent->index;
+				}
 			}
 		};
 		Tally hidden_nodes;
-		push(rootsOf(m_root.objects("scenes")[scene], nodes), glm::dmat4(1.0), false);
+		push(rootsOf(m_root.objects("scenes")[scene], nodes), nullptr, false);
 		while (!open.empty())
 		{
 			PlacedNode node = open.back();
@@ -116,7 +120,7 @@ public:
 			node.world = node.world * localOf(nodes[node.index]);
 			const std::optional<JsonValue> visibility = extensionOf(nodes[node.index], "KHR_node_visibility");
 			const bool hidden = !node.has_mesh || (visibility && !visibility->boolean("visible", true));
-			push(nodes[node.index].indices("children", nodes.size()), node.world, hidden);
+			push(nodes[node.index].indices("children", nodes.size()), &node, hidden);
 			node.has_mesh = !hidden;
 			placed.push_back(node);
 			if (hidden)
@@ -128,7 +132,7 @@ public:
 			placed.back().has_mesh = !places;
 			for (std::size_t i = 0; places && i < places->size(); ++i)
 			{
-				placed.push_back({node.index, node.world * (*places)[i], i, true});
+				placed.push_back({node.index, node.world * (*places)[i], i, true, node.parent});
 			}
 			left -= places ? places->size() : 0;
 		}

@@ -58,6 +58,14 @@ struct Material
 	bool two_sided = false;
 };
 
+// A node of the file's tree, or a mesh below its node.
+struct PartNode
+{
+	std::string name;
+	int parent = -1;                 // index into Level::nodes; −1: none
+	std::vector<std::string> extras; // "key=value"
+};
+
 // Triangles of one placement of a mesh of the file.
 struct Mesh
 {
@@ -68,6 +76,8 @@ struct Mesh
 	// For a cell cut out of a level (cutCell):
 	bool around = false; // surroundings: occludes, but belongs to another cell
 	bool closed = false; // part of a closed surface, possibly cut: its back is never visible
+
+	int node = -1; // index into Level::nodes; −1: the file has no tree
 };
 
 struct Level
@@ -83,6 +93,7 @@ struct Level
 	std::vector<glm::uvec3> triangles; // vertex indices, counter-clockwise seen from the front
 	std::vector<uint32_t> materials;   // per triangle, index into material_list
 	std::vector<Mesh> meshes;          // cover the triangles in order, without gaps
+	std::vector<PartNode> nodes;       // parents first
 	std::vector<Material> material_list;
 	std::vector<Mask> masks;
 	std::vector<LevelCamera> cameras;
@@ -112,6 +123,29 @@ AlphaCounts countAlpha(const Mask& mask);
 // one mask.
 void measureAlpha(Material& material, const std::vector<Mask>& masks);
 void measureAlpha(Material& material, const AlphaCounts& counts);
+
+// Chooses parts of a level.
+
+// Returns 1 for each triangle that one of the patterns chooses. A pattern chooses nodes by name, with everything below them, and
+// meshes: "Lamp", "Lamp*"; by path: "/Room/**/Lamp", "Room/*"; "material:GLOB"; "extras:KEY" or "extras:KEY=VALUE" of nodes and
+// meshes. Empty without patterns. Throws Error (usage) for a pattern that chooses no triangle; `option` names it.
+std::vector<uint8_t> chosenTriangles(const Level& level, std::span<const std::string> patterns, const std::string& option);
+
+// "/Room/Lamp/Cube": what a pattern for this mesh alone may be.
+std::string pathOf(const Level& level, const Mesh& mesh);
+
+// The triangles of a level that are marked with 1, and their vertices.
+struct LevelPart
+{
+	Level level;
+	std::vector<uint32_t> vertices; // per vertex of the whole level: its index in the part, or UINT32_MAX
+
+	glm::uvec3 triangle(glm::uvec3 whole) const
+	{
+		return {vertices[whole.x], vertices[whole.y], vertices[whole.z]};
+	}
+};
+LevelPart partOf(const Level& level, std::span<const uint8_t> marks, int threads);
 
 // Cuts a box out of a level, with the surroundings needed for the same light as in the whole level.
 

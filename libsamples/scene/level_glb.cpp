@@ -203,9 +203,11 @@ private:
 	{
 		m_current += 1;
 		std::vector<uint32_t> vertices;
+		std::size_t first_triangle = mesh.first_triangle;
 		const std::size_t first_index = m_indices.size() / sizeof(uint32_t);
 		for (std::size_t t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t)
 		{
+			first_triangle = vertices.empty() ? t : first_triangle;
 			for (int corner = 0; corner < 3 && m_level.materials[t] == material; ++corner)
 			{
 				appendRaw(m_indices, slotOf(m_level.triangles[t][corner], vertices));
@@ -239,6 +241,7 @@ private:
 			place.node = m_nodes.size();
 			place.primitive = number;
 			place.count = vertices.size();
+			place.triangle = first_triangle;
 			for (std::size_t v = 0; v < vertices.size(); ++v)
 			{
 				place.vertices.emplace_back(static_cast<uint32_t>(v), vertices[v]);

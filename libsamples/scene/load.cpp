@@ -4,6 +4,7 @@
 #include "core/content_hash.h"
 #include "core/decimal.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "core/parallel.h"
 #include "core/words.h"
 #include "core/work_units.h"
@@ -25,6 +26,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <tuple>
 #include <unordered_set>
 
 namespace nook
@@ -102,14 +104,62 @@ Level readLevel(const std::string& path, const LoadSettings& settings, LevelSour
 	return level;
 }
 
-// Cleans a level that was read again along with `second`.
-void cleanAgain(Level& again, const std::string& name, const Level& level, std::vector<glm::vec2>& second, const RunSettings& run)
+void dropTriangles(Level& level, std::span<const uint8_t> keep)
 {
-	cleanLevel(again, silent(run), &second);
+	std::size_t to = 0;
+	std::vector<Mesh> meshes;
+	for (const Mesh& mesh : level.meshes)
+	{
+		const std::size_t begin = to;
+		for (std::size_t i = mesh.first_triangle; i < mesh.first_triangle + mesh.triangle_count; ++i)
+		{
+			if (keep[i] != 0)
+			{
+				level.triangles[to] = level.triangles[i];
+				level.materials[to] = level.materials[i];
+				to += 1;
+			}
+		}
+		if (to > begin)
+		{
+			Mesh& kept = meshes.emplace_back(mesh);
+			kept.first_triangle = begin;
+			kept.triangle_count = to - begin;
+		}
+	}
+	level.triangles.resize(to);
+	level.materials.resize(to);
+	level.meshes = std::move(meshes);
+}
+
+// Vertices stay until the level is cleaned.
+void ignoreParts(Level& level, const LoadSettings& settings)
+{
+	if (settings.ignore.empty())
+	{
+		return;
+	}
+	std::vector<uint8_t> keep = chosenTriangles(level, settings.ignore, "ignore");
+	std::transform(keep.begin(), keep.end(), keep.begin(), [](uint8_t chosen) { return chosen == 0 ? 1 : 0; });
+	dropTriangles(level, keep);
+	if (level.triangles.empty())
+	{
+		refuseInput(level.name + ": ignore", "every part", "one that is left");
+	}
+}
+
+// Cleans a level that was read again; returns the earlier index of each vertex.
+std::vector<uint32_t> cleanAgain(Level& again, const std::string& name, const LoadSettings& settings, const Level& level,
+								 const RunSettings& run)
+{
+	std::vector<uint32_t> before;
+	ignoreParts(again, settings);
+	cleanLevel(again, silent(run), &before);
 	if (again.positions != level.positions) // triangles may be flipped by now (bake/bake.h)
 	{
 		refuseInput(name, "other vertices when reading it again", "an unchanged file");
 	}
+	return before;
 }
 
 // Texture coordinates, or the values in their place; empty if no vertex has any.
@@ -118,10 +168,10 @@ std::vector<glm::vec2> secondSet(const std::string& name, const LoadSettings& se
 {
 	LevelSource source;
 	Level again = readLevel(name, settings, source, set);
-	std::vector<glm::vec2>& second = source.second_uvs;
-	cleanAgain(again, name, level, second, run);
+	const std::vector<glm::vec2> second =
+		mapped(cleanAgain(again, name, settings, level, run), [&](uint32_t before) { return source.second_uvs[before]; });
 	const bool none = std::all_of(second.begin(), second.end(), [](glm::vec2 uv) { return std::isnan(uv.x); });
-	return none ? std::vector<glm::vec2>{} : std::move(second);
+	return none ? std::vector<glm::vec2>{} : second;
 }
 
 // Not yet cleaned; adds findings from reading.
@@ -163,75 +213,42 @@ void checkCleaned(const LoadedLevel& loaded, const std::string& name, const Load
 	}
 }
 
-void dropTriangles(Level& level, std::span<const uint8_t> keep)
+// Returns the earlier index of each vertex that is left.
+std::vector<uint32_t> dropVertices(Level& level, int threads)
 {
-	std::size_t to = 0;
-	std::vector<Mesh> meshes;
-	for (const Mesh& mesh : level.meshes)
-	{
-		const std::size_t begin = to;
-		for (std::size_t i = mesh.first_triangle; i < mesh.first_triangle + mesh.triangle_count; ++i)
-		{
-			if (keep[i] != 0)
-			{
-				level.triangles[to] = level.triangles[i];
-				level.materials[to] = level.materials[i];
-				to += 1;
-			}
-		}
-		if (to > begin)
-		{
-			Mesh& kept = meshes.emplace_back(mesh);
-			kept.first_triangle = begin;
-			kept.triangle_count = to - begin;
-		}
-	}
-	level.triangles.resize(to);
-	level.materials.resize(to);
-	level.meshes = std::move(meshes);
-}
-
-void dropVertices(Level& level, int threads, std::vector<glm::vec2>* more)
-{
-	std::vector<uint8_t> used(level.positions.size(), 0);
+	std::vector<uint32_t> moved(level.positions.size(), 0); // 1 for used ones, then their new indices
 	for (const glm::uvec3& t : level.triangles)
 	{
-		used[t.x] = used[t.y] = used[t.z] = 1;
+		moved[t.x] = moved[t.y] = moved[t.z] = 1;
 	}
-	if (std::find(used.begin(), used.end(), 0) == used.end())
+	std::vector<uint32_t> before;
+	for (uint32_t i = 0; i < moved.size(); ++i)
 	{
-		return;
-	}
-	std::vector<uint32_t> moved(used.size());
-	uint32_t to = 0;
-	for (std::size_t i = 0; i < used.size(); ++i)
-	{
-		moved[i] = to;
-		if (used[i] != 0)
+		if (moved[i] != 0)
 		{
-			level.positions[to] = level.positions[i];
-			level.normals[to] = level.normals[i];
-			level.uvs[to] = level.uvs[i];
-			if (more != nullptr)
-			{
-				(*more)[to] = (*more)[i];
-			}
-			to += 1;
+			moved[i] = static_cast<uint32_t>(before.size());
+			before.push_back(i);
 		}
 	}
-	level.positions.resize(to);
-	level.normals.resize(to);
-	level.uvs.resize(to);
-	if (more != nullptr)
+	if (before.size() == moved.size())
 	{
-		more->resize(to);
+		return before;
 	}
+	const auto take = [&before](auto& values)
+	{
+		std::transform(before.begin(), before.end(), values.begin(), [&values](uint32_t i) { return values[i]; });
+		values.resize(before.size());
+	};
+	take(level.positions);
+	take(level.normals);
+	take(level.uvs);
 	parallelForAll(level.triangles.size(), threads,
 				   [&](std::size_t i)
 				   {
 					   glm::uvec3& t = level.triangles[i];
 					   t = {moved[t.x], moved[t.y], moved[t.z]};
 				   });
+	return before;
 }
 
 bool areSame(const Mask& a, const Mask& b)
@@ -296,9 +313,16 @@ void appendLevel(Level& to, Level from, glm::dvec3 move)
 		const bool inside = std::max({triangle.x, triangle.y, triangle.z}) < from.positions.size();
 		to.triangles.push_back(inside ? triangle + vertices : glm::uvec3(UINT32_MAX));
 	}
+	const auto nodes = static_cast<int>(to.nodes.size());
+	for (PartNode& node : from.nodes)
+	{
+		node.parent += node.parent < 0 ? 0 : nodes;
+		to.nodes.push_back(std::move(node));
+	}
 	for (Mesh& mesh : from.meshes)
 	{
 		mesh.first_triangle += triangles;
+		mesh.node += mesh.node < 0 ? 0 : nodes;
 		to.meshes.push_back(std::move(mesh));
 	}
 	appendMaterials(to, from);
@@ -341,7 +365,9 @@ LoadedLevel readLevels(std::span<const PlacedLevel> levels, const LoadSettings& 
 		loaded.level.name += " and " + std::to_string(levels.size() - 1) + " more";
 	}
 	stage.emplace(run.progress, "triangles");
+	ignoreParts(loaded.level, settings);
 	loaded.diagnosis = cleanLevel(loaded.level, run);
+	findUndrawn(loaded.level, findings);
 	addFindings(loaded.diagnosis, findings);
 	checkCleaned(loaded, levels.size() == 1 ? levels.front().name : loaded.level.name, settings);
 	return loaded;
@@ -387,6 +413,10 @@ std::string keyOf(std::span<const PlacedLevel> levels, const LoadSettings& setti
 		  settings.allow_outside ? 1.0 : 0.0, static_cast<double>(settings.pose), static_cast<double>(settings.tr)})
 	{
 		key.add(value);
+	}
+	for (const std::string& pattern : settings.ignore)
+	{
+		key.add(pattern);
 	}
 	return key.text();
 }
@@ -446,19 +476,11 @@ LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& 
 
 LoadedLevel loadLevel(Level level, bool strict, std::vector<uint32_t>& vertices, const RunSettings& run)
 {
-	std::vector<glm::vec2> halves(level.positions.size()); // of indices: 32-bit floats hold 16 bits
-	for (std::size_t i = 0; i < halves.size(); ++i)
-	{
-		halves[i] = {static_cast<float>(i >> 16U), static_cast<float>(i & 0xFFFFU)};
-	}
 	LoadedLevel loaded{std::move(level), {}};
-	loaded.diagnosis = cleanLevel(loaded.level, run, &halves);
+	loaded.diagnosis = cleanLevel(loaded.level, run, &vertices);
 	LoadSettings settings;
 	settings.strict = strict;
 	checkCleaned(loaded, loaded.level.name, settings);
-	vertices.resize(halves.size());
-	std::transform(halves.begin(), halves.end(), vertices.begin(),
-				   [](glm::vec2 half) { return (static_cast<uint32_t>(half.x) << 16U) + static_cast<uint32_t>(half.y); });
 	return loaded;
 }
 
@@ -473,19 +495,29 @@ std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings
 	return secondSet(name, settings, level, set, run);
 }
 
-std::vector<GltfPlace> loadPlaces(const std::string& name, const LoadSettings& settings, const Level& level, const RunSettings& run)
+std::vector<GltfPlace> loadPlaces(const std::string& name, const LoadSettings& settings, const Level& level,
+								  std::span<const std::string> receivers, const RunSettings& run)
 {
 	const ProgressCounter stage(run.progress, "places");
 	LevelSource source;
 	Level again = readLevel(name, settings, source, kPlacesSet);
-	std::vector<glm::vec2>& numbers = source.second_uvs;
 	const std::vector<glm::dvec3> positions = again.positions;
 	const std::vector<glm::vec3> normals = again.normals;
-	cleanAgain(again, name, level, numbers, run);
-	std::vector<uint32_t> now(positions.size(), UINT32_MAX);
-	for (std::size_t i = 0; i < numbers.size(); ++i)
+	for (const auto& [patterns, kept, option] :
+		 {std::tuple(std::span<const std::string>(settings.ignore), 0, "ignore"), {receivers, 1, "receivers"}})
 	{
-		now[(static_cast<std::size_t>(numbers[i].x) << 14U) + static_cast<std::size_t>(numbers[i].y)] = static_cast<uint32_t>(i);
+		if (!patterns.empty())
+		{
+			const std::vector<uint8_t> chosen = chosenTriangles(again, patterns, option);
+			std::erase_if(source.places, [&chosen, kept = kept](const GltfPlace& place)
+						  { return place.vertices.empty() || chosen[place.triangle] != kept; });
+		}
+	}
+	const std::vector<uint32_t> before = cleanAgain(again, name, settings, level, run);
+	std::vector<uint32_t> now(positions.size(), UINT32_MAX);
+	for (uint32_t i = 0; i < before.size(); ++i)
+	{
+		now[before[i]] = i;
 	}
 	std::map<std::array<double, 3>, std::vector<uint32_t>> at; // the level's vertices by position, if any is looked for
 	const auto nearest = [&](glm::dvec3 position, glm::vec3 normal)
@@ -505,11 +537,11 @@ std::vector<GltfPlace> loadPlaces(const std::string& name, const LoadSettings& s
 	{
 		for (auto& [of_file, of_level] : place.vertices)
 		{
-			const uint32_t before = of_level;
-			of_level = now[before];
-			if (of_level == UINT32_MAX && glm::all(glm::lessThan(glm::abs(positions[before]), glm::dvec3(kFarthest_m))))
+			const uint32_t read = of_level;
+			of_level = now[read];
+			if (of_level == UINT32_MAX && glm::all(glm::lessThan(glm::abs(positions[read]), glm::dvec3(kFarthest_m))))
 			{
-				of_level = nearest(positions[before], normals[before]);
+				of_level = nearest(positions[read], normals[read]);
 			}
 		}
 		std::erase_if(place.vertices, [](const auto& vertex) { return vertex.second == UINT32_MAX; });
@@ -549,7 +581,7 @@ BakedValues loadBakedValues(const std::string& path, const Level& level, const R
 	refuseInput(path, "no attribute _VISIBILITY", "a file of nook bake");
 }
 
-void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std::vector<glm::vec2>* more)
+void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std::vector<uint32_t>* before)
 {
 	assert(keep.size() == level.triangles.size());
 	if (std::find(keep.begin(), keep.end(), 0) != keep.end() ||
@@ -557,7 +589,11 @@ void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std:
 	{
 		dropTriangles(level, keep);
 	}
-	dropVertices(level, threads, more);
+	std::vector<uint32_t> vertices = dropVertices(level, threads);
+	if (before != nullptr)
+	{
+		*before = std::move(vertices);
+	}
 }
 
 void visit(Archive& archive, Material& material)
@@ -573,7 +609,12 @@ void visit(Archive& archive, Mask& mask)
 
 void visit(Archive& archive, Mesh& mesh)
 {
-	archive(mesh.name, mesh.first_triangle, mesh.triangle_count, mesh.around, mesh.closed);
+	archive(mesh.name, mesh.first_triangle, mesh.triangle_count, mesh.around, mesh.closed, mesh.node);
+}
+
+void visit(Archive& archive, PartNode& node)
+{
+	archive(node.name, node.parent, node.extras);
 }
 
 void visit(Archive& archive, LevelCamera& camera)
@@ -591,7 +632,7 @@ void visit(Archive& archive, LoadedLevel& loaded)
 {
 	Level& level = loaded.level;
 	archive(level.files, level.name, level.positions, level.normals, level.uvs, level.triangles, level.materials, level.meshes,
-			level.material_list, level.masks, level.cameras, loaded.diagnosis.findings);
+			level.nodes, level.material_list, level.masks, level.cameras, loaded.diagnosis.findings);
 }
 
 } // namespace nook

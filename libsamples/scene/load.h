@@ -56,7 +56,8 @@ enum class TrMeaning
 	opacity,      // opacity, as some programs write it
 };
 
-struct LoadSettings
+// How a file is read.
+struct FileSettings
 {
 	double unit_m = 0.0; // metres per unit of the file; 0: as the format or the file states (glTF 1, FBX its own, others 1)
 	UpAxis up = UpAxis::file;
@@ -65,6 +66,11 @@ struct LoadSettings
 	bool allow_outside = false;            // files that the level names may be outside its folder
 	Pose pose = Pose::file;
 	TrMeaning tr = TrMeaning::automatic;
+};
+
+struct LoadSettings : FileSettings
+{
+	std::vector<std::string> ignore; // patterns of parts that are left out (chosenTriangles)
 };
 
 struct LoadedLevel
@@ -97,8 +103,8 @@ LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& 
 // Throws Error (invalid_input) if no triangle is left, or there are findings under `strict`.
 LoadedLevel loadLevel(Level level, bool strict, std::vector<uint32_t>& vertices, const RunSettings& run);
 
-// Drops unusable triangles and reports oddities. Keeps every triangle that a ray can hit, once. `more`, one per vertex, is filtered
-// like the vertices and affects nothing else.
-Diagnosis cleanLevel(Level& level, const RunSettings& run, std::vector<glm::vec2>* more = nullptr);
+// Drops unusable triangles and reports oddities. Keeps every triangle that a ray can hit, once. `before`: becomes the earlier index
+// of each vertex that is left.
+Diagnosis cleanLevel(Level& level, const RunSettings& run, std::vector<uint32_t>* before = nullptr);
 
 } // namespace nook

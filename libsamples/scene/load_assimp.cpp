@@ -330,6 +330,7 @@ private:
 	{
 		m_to.value(MeshHead{mesh.mMaterialIndex, false});
 		m_to.text(name);
+		m_to.value(uint32_t{0}); // names of a path, which none of these formats has
 		positions(mesh, world);
 		normals(mesh, world);
 		uvs(mesh);
@@ -411,7 +412,8 @@ private:
 void readLevelFile(ValueReader& request, ValueWriter& answer)
 {
 	const std::string path = request.text();
-	const auto settings = request.value<LoadSettings>();
+	LoadSettings settings;
+	static_cast<FileSettings&>(settings) = request.value<FileSettings>();
 	if (endingOf(path) == ".fbx")
 	{
 		sendFbx(path, settings, answer);

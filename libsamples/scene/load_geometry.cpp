@@ -168,6 +168,16 @@ private:
 		}
 		Mesh& mesh = m_level.meshes.emplace_back();
 		mesh.name = m_from.text();
+		for (uint64_t left = m_from.value<uint32_t>(); left > 0; --left)
+		{
+			const auto next = static_cast<int>(m_level.nodes.size());
+			const auto [known, is_new] = m_nodes.try_emplace({mesh.node, m_from.text()}, next);
+			if (is_new)
+			{
+				m_level.nodes.push_back({known->first.second, mesh.node, {}});
+			}
+			mesh.node = known->second;
+		}
 		mesh.first_triangle = m_level.triangles.size();
 		const std::size_t before = m_level.positions.size();
 		m_from.values(m_level.positions, 3 * kMaxTriangles);
@@ -210,7 +220,8 @@ private:
 	LevelSource& m_source;
 	Level& m_level;
 	ValueReader& m_from;
-	Tally m_no_uvs; // masked meshes without coordinates
+	Tally m_no_uvs;                                     // masked meshes without coordinates
+	std::map<std::pair<int, std::string>, int> m_nodes; // by parent and name
 };
 
 std::size_t bytesOf(const std::vector<std::string>& files)
@@ -240,7 +251,7 @@ void readGeometry(const std::string& path, const LoadSettings& settings, LevelSo
 		[&](ValueWriter& to)
 		{
 			to.text(path);
-			to.value(settings);
+			to.value(static_cast<const FileSettings&>(settings));
 		},
 		[&](ValueReader& from) { Receiver(path, source, level, from).run(); });
 }

@@ -151,7 +151,7 @@ struct Kind
 	std::string_view id;
 	std::string_view action;
 };
-constexpr std::array<Kind, 23> kKinds{{
+constexpr std::array<Kind, 25> kKinds{{
 	{"missing-file", "ignored"},
 	{"hidden-nodes", "dropped"},
 	{"lower-lods", "dropped"},
@@ -175,6 +175,8 @@ constexpr std::array<Kind, 23> kKinds{{
 	{"inconsistent-winding", "kept"},
 	{"inside-out-parts", "kept"},
 	{"large-coordinates", "kept"},
+	{"collision-meshes", "kept"},
+	{"skies", "kept"},
 }};
 
 std::size_t rankOf(std::string_view id)

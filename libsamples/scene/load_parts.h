@@ -67,6 +67,7 @@ struct GltfPlace
 	std::optional<std::size_t> instance;                 // by EXT_mesh_gpu_instancing
 	std::size_t primitive = 0;                           // of the node's mesh
 	std::size_t count = 0;                               // vertices of the primitive, used or not
+	std::size_t triangle = 0;                            // its first one of the level as read
 	std::vector<std::pair<uint32_t, uint32_t>> vertices; // number in the primitive, and in the level; each used one once
 };
 
@@ -97,6 +98,9 @@ struct Tally
 		count += times;
 	}
 };
+
+// Reports parts whose names say that nobody sees them: collision meshes and skies.
+void findUndrawn(const Level& level, std::vector<Finding>& findings);
 
 // Adds a finding if the tally is not empty; diagnosis.cpp's table gives its action.
 void report(std::vector<Finding>& findings, std::string_view id, const Tally& tally);
@@ -145,7 +149,7 @@ void nameCameras(std::vector<LevelCamera>& cameras);
 
 // Special values for a texture coordinate set: values of nook bake, front and back; indexed by BakedKind.
 inline constexpr std::array<uint32_t, 3> kBakedSets{0xfffffffdU, 0xfffffffeU, 0xffffffffU};
-// Likewise: the number that the vertex has before cleanLevel(), as two parts of 14 bits, which 32-bit floats hold.
+// Likewise: no coordinates, but LevelSource::places.
 inline constexpr uint32_t kPlacesSet = 0xfffffffcU;
 inline constexpr std::array<std::string_view, 3> kBakedNames{"_VISIBILITY", "_DIFFERENCE", "_DIFFERENCE_MASK"};
 
@@ -156,7 +160,7 @@ LevelSource readGltf(const std::string& path, const LoadSettings& settings, Leve
 // Any other format: reads in a worker; appends triangles to `level`, and materials and cameras to `source`.
 void readGeometry(const std::string& path, const LoadSettings& settings, LevelSource& source, Level& level);
 
-// Worker protocol (load_assimp.cpp, fbx_source.cpp): a path and LoadSettings → what readGeometry() expects, in that order.
+// Worker protocol (load_assimp.cpp, fbx_source.cpp): a path and FileSettings → what readGeometry() expects, in that order.
 inline constexpr const char* kLevelWorker = "nook_level_worker";
 inline constexpr const char* kReadLevel = "read level";
 
@@ -189,8 +193,8 @@ void finishMaterials(const LoadSettings& settings, LevelSource& source, Level& l
 // Removes triangles from a level, and everything that becomes unused.
 
 // Drops the triangles with keep[i] = 0, vertices that no other triangle uses (their indices may be out of range), and meshes that
-// become empty. Preserves the order. `more`, one per vertex, is filtered like the vertices.
-void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std::vector<glm::vec2>* more = nullptr);
+// become empty. Preserves the order. `before`: becomes the earlier index of each vertex that is left.
+void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std::vector<uint32_t>* before = nullptr);
 
 // Loads texture coordinates of a level, for lightmaps.
 
@@ -203,7 +207,8 @@ std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings
 
 // Where the vertices of `level`, loaded from a glTF file, are in that file. A vertex of dropped triangles alone gets the level's
 // vertex at its position, with the nearest normal; none if there is none. Reads the file again, as loadSecondUvs() does.
+// `receivers`: patterns of the places to return (chosenTriangles); empty: all.
 std::vector<GltfPlace> loadPlaces(const std::string& name, const LoadSettings& settings, const Level& level,
-								  const RunSettings& run);
+								  std::span<const std::string> receivers, const RunSettings& run);
 
 } // namespace nook

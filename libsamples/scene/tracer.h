@@ -45,8 +45,8 @@ class Tracer
 public:
 	// Keeps a reference to the level, which must outlive this object. Requires at least one triangle. Throws Error (runtime) if out
 	// of memory. `near`: leaves out triangles that do not touch it, since no ray will get there: a smaller tree with the same
-	// results.
-	Tracer(const Level& level, const RunSettings& run, const Vicinity* near = nullptr);
+	// results. `occluders`: 1 for each triangle that rays hit; empty: all.
+	Tracer(const Level& level, const RunSettings& run, const Vicinity* near = nullptr, std::span<const uint8_t> occluders = {});
 	~Tracer();
 	Tracer(const Tracer&) = delete;
 	Tracer& operator=(const Tracer&) = delete;

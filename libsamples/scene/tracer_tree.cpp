@@ -148,7 +148,7 @@ void Tracer::Data::check(const std::string& what) const
 	}
 }
 
-void Tracer::Data::fill(int threads, const Vicinity* near)
+void Tracer::Data::fill(int threads, const Vicinity* near, std::span<const uint8_t> occluders)
 {
 	bounds = boundsOf(level);
 	centre = 0.5 * (bounds.least + bounds.most);
@@ -158,7 +158,8 @@ void Tracer::Data::fill(int threads, const Vicinity* near)
 	{
 		const Material& material = level.material_list[level.materials[i]];
 		// Otherwise it is entirely transparent, such as clear glass, or out of reach of all rays.
-		if (material.coverage > 0.0 && (near == nullptr || near->touches(boundsOf(level, i))))
+		if (material.coverage > 0.0 && (near == nullptr || near->touches(boundsOf(level, i))) &&
+			(occluders.empty() || occluders[i] != 0))
 		{
 			(isOpaque(material) ? opaque : masked).triangles.push_back(static_cast<uint32_t>(i));
 		}
@@ -211,12 +212,13 @@ void Tracer::Data::attach(tracing::Part& part, unsigned id)
 	rtcReleaseGeometry(geometry);
 }
 
-Tracer::Tracer(const Level& level, const RunSettings& run, const Vicinity* near) : m_data(std::make_unique<Data>(level))
+Tracer::Tracer(const Level& level, const RunSettings& run, const Vicinity* near, std::span<const uint8_t> occluders)
+	: m_data(std::make_unique<Data>(level))
 {
-	assert(!level.triangles.empty() && run.threads >= 1);
+	assert(!level.triangles.empty() && run.threads >= 1 && (occluders.empty() || occluders.size() == level.triangles.size()));
 	const ProgressCounter stage(run.progress, "tree");
 	Data& data = *m_data;
-	data.fill(run.threads, near);
+	data.fill(run.threads, near, occluders);
 	data.device = newEmbreeDevice();
 	data.scene = rtcNewScene(data.device);
 	rtcSetSceneFlags(data.scene, RTC_SCENE_FLAG_ROBUST); // watertight along shared edges

@@ -78,7 +78,7 @@ struct Tracer::Data
 		rtcReleaseDevice(device);
 	}
 
-	void fill(int threads, const Vicinity* near);
+	void fill(int threads, const Vicinity* near, std::span<const uint8_t> occluders);
 	void attach(tracing::Part& part, unsigned id);
 	void check(const std::string& what) const;
 	glm::vec3 local(glm::dvec3 position) const

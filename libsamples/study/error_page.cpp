@@ -121,6 +121,10 @@ std::string loadOptions(const LoadSettings& load)
 	text += load.up == UpAxis::file ? "" : std::string(" --up ") + "xyz"[static_cast<std::size_t>(load.up) - 1];
 	text += load.max_texels == kMaxTexels ? "" : " --max-texels " + std::to_string(load.max_texels);
 	text += load.pose == Pose::rest ? " --pose rest" : "";
+	for (const std::string& pattern : load.ignore)
+	{
+		text += " --ignore " + shellWord(pattern);
+	}
 	text += load.tr == TrMeaning::automatic ? "" : load.tr == TrMeaning::opacity ? " --tr opacity" : " --tr transparency";
 	return text + (load.strict ? " --strict" : "") + (load.allow_outside ? " --allow-outside" : "");
 }

@@ -377,7 +377,7 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& wanted, cons
 	{
 		tracer = std::make_unique<Tracer>(level, run);
 	}
-	findOccluders(built, level, tracer.get(), settings, run);
+	findOccluders(built, settings.occluding != nullptr ? *settings.occluding : level, tracer.get(), settings, run);
 	VolumeSet all;
 	VolumeSet hidden;
 	const double surface_m =

@@ -64,6 +64,7 @@ struct VolumeSettings
 	double ray_distance_m = 0.0; // radius of the equivalent reference with linear falloff; 0: the paper's δ / 0.6, or fitted
 	bool exact_bounds = false;
 	OccluderSettings occluders;        // its distance_m is ignored in favour of the one above
+	const Level* occluding = nullptr;  // the part of the level that gets volumes; null: all of it
 	std::optional<double> detail_more; // if set, chooses occluders.detail for at most this fraction more error
 	DropSettings drop;
 	std::optional<TrimSettings> trim;             // none: do not trim

@@ -378,7 +378,7 @@ Dropped dropVolumes(const Occluders& occluders, const Tracer& tracer, double dis
 	start(search);
 	if (settings.no_receiver || settings.sides || settings.inside || settings.hidden || settings.below > 0.0)
 	{
-		const SideSettings sides{settings.inside, settings.visible_from, settings.seen_rays, false};
+		const SideSettings sides{settings.inside, settings.visible_from, settings.seen_rays, false, settings.receivers};
 		runOnce(
 			"sides", [&] { search.sides = receiverSides(tracer, sides, withoutUnits(run)); },
 			[&](Archive& archive) { archive(search.sides); }, run);

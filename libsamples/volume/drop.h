@@ -31,6 +31,7 @@ struct DropSettings
 	std::vector<Bounds>
 		visible_from;   // boxes that contain all cameras; receivers not visible from them are ignored. Empty: cameras anywhere
 	int seen_rays = 64; // rays per triangle before it counts as invisible from the boxes, ≥ 1
+	std::vector<uint8_t> receivers; // 1 for each triangle whose darkening counts; empty: all
 };
 
 // Visibility, from independent receivers, of the sides dropped as hidden.

@@ -485,6 +485,10 @@ ReceiverSides receiverSides(const Tracer& tracer, const SideSettings& settings, 
 	{
 		leaveOutOfSight(tracer, settings, sides, run);
 	}
+	for (std::size_t i = 0; i < settings.receivers.size(); ++i)
+	{
+		sides.seen[i] = settings.receivers[i] != 0 ? sides.seen[i] : 0;
+	}
 	return sides;
 }
 

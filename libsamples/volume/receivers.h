@@ -31,6 +31,7 @@ struct SideSettings
 	std::span<const Bounds> boxes; // that contain all cameras; empty: anywhere
 	int seen_rays = 64;            // rays from the boxes to a triangle before it counts as invisible, ≥ 1
 	bool backs = false;            // include the backs of one-sided materials although hardly visible: the level is inside out
+	std::span<const uint8_t> receivers{}; // 1 for each triangle that counts as visible at all; empty: all
 };
 
 // Visible sides of each material, from rays in all directions from the level's cameras, or from automatic ones.

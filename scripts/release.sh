@@ -56,16 +56,16 @@ if built all library; then
 fi
 if built all aarch64 -DCMAKE_EXE_LINKER_FLAGS=-static; then
 	packaging/portable.sh build/aarch64 "$out"
-	tested "nook-*-linux-aarch64.tar.xz" "QEMU on $system" sh tests/targets_test.sh "$PWD/build/release/tools/nook" . build aarch64
+	tested "nook-*-linux-aarch64.tar.xz" "QEMU on $system" sh tests/targets_test.sh "$PWD/build/release/tools/nook" "$PWD" "$PWD/build" aarch64
 fi
 if built all windows; then
 	(cd build/windows && cpack -G ZIP -B "$out" >/dev/null)
 	rm -rf "$out/_CPack_Packages"
-	tested "nook-*-windows-x86_64.zip" "Wine on $system" sh tests/targets_test.sh "$PWD/build/release/tools/nook" . build windows
+	tested "nook-*-windows-x86_64.zip" "Wine on $system" sh tests/targets_test.sh "$PWD/build/release/tools/nook" "$PWD" "$PWD/build" windows
 fi
 if built all wasm; then
 	(cd build/wasm/npm && npm pack --pack-destination "$out" >/dev/null 2>&1)
-	tested "nook-patterns-*.tgz" "Node.js on $system" sh tests/targets_test.sh "$PWD/build/release/tools/nook" . build wasm
+	tested "nook-patterns-*.tgz" "Node.js on $system" sh tests/targets_test.sh "$PWD/build/release/tools/nook" "$PWD" "$PWD/build" wasm
 fi
 awk '/^## / { if (found++) exit } found' CHANGELOG.md >"$out/NOTES"
 (cd "$out" && for file in *; do [ "$file" = TESTED ] || [ "$file" = NOTES ] || sha256sum "$file"; done >"$scratch/sums" && mv "$scratch/sums" SHA256SUMS)

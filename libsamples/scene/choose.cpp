@@ -175,6 +175,10 @@ std::vector<uint8_t> chosenTriangles(const Level& level, std::span<const std::st
 		const bool by_name = !by_material && !by_extras;
 		const std::string_view glob = by_name ? text : std::string_view(text).substr(text.find(':') + 1);
 		const std::vector<std::string_view> steps = by_name ? stepsOf(text) : std::vector<std::string_view>();
+		if (steps.size() > kMostSteps)
+		{
+			refusePattern(level, text, option);
+		}
 		std::vector<uint64_t> reached;
 		std::vector<uint8_t> nodes; // 1: chosen
 		for (const PartNode& node : level.nodes)
@@ -199,7 +203,7 @@ std::vector<uint8_t> chosenTriangles(const Level& level, std::span<const std::st
 				any = any || here;
 			}
 		}
-		if (!any || steps.size() > kMostSteps)
+		if (!any)
 		{
 			refusePattern(level, text, option);
 		}

@@ -99,10 +99,10 @@ class Watched:
         check(not os.path.exists(self.folder), f"found {self.folder}, expected it to be removed")
 
 
-def direct(file, radius=1.0, rays=64):
+def direct(file, *options, radius=1.0, rays=64):
     """Returns the program's values for a file, in the file's order."""
     out = os.path.join(FOLDER, "direct.csv")
-    subprocess.run([PROGRAM, "bake", file, "--radius", str(radius), "--rays", str(rays), "-o", out], check=True,
+    subprocess.run([PROGRAM, "bake", file, "--radius", str(radius), "--rays", str(rays), *options, "-o", out], check=True,
                    stdout=subprocess.DEVNULL)
     with open(out) as rows:
         return np.array([row["visibility"] for row in csv.DictReader(rows)], np.float32)
@@ -129,7 +129,7 @@ def test_values(watched):
     names = ["Cube", "Plane", "Suzanne"]
     watched.bake(*names)
     check(watched.notes == [], f"found {watched.notes}, expected no notes")
-    expected = direct(os.path.join(FOLDER, "level.glb"))
+    expected = direct(os.path.join(FOLDER, "level.glb"), "--receivers", "extras:receives")
     found = np.concatenate([values(name) for name in sorted(names)])
     check(np.array_equal(found, expected[:len(found)]), "found other values than those of the program for the same file")
     cube = bpy.data.objects["Cube"].data
@@ -166,7 +166,7 @@ def test_targets(watched):
     watched.bake("Cube", "Plane", target="ALPHA")
     check(np.array_equal(values("Cube", "Paint", 1), np.full(8, 0.5, np.float32)), "found other colours, expected them kept")
     check(values("Cube", "Paint", 3).min() < 0.9, "found an alpha of 1, expected visibility")
-    alphas = direct(os.path.join(FOLDER, "level.glb"))
+    alphas = direct(os.path.join(FOLDER, "level.glb"), "--receivers", "extras:receives")
     check(np.array_equal(values("Cube", "Paint", 3), alphas[:8]), "found other alphas than the program's values")
     cube.color_attributes.remove(cube.color_attributes["Paint"])
     cube.attributes.remove(cube.attributes["_VISIBILITY"])
@@ -205,7 +205,7 @@ def test_shared_meshes(watched):
     expected = "Sphere: has 2 users, which all get the mean of the 2 selected"
     check(len(watched.notes) == 1 and expected in watched.notes[0], f"found {watched.notes}, expected {expected}")
     both = values("Sphere")
-    rows = direct(os.path.join(FOLDER, "level.glb"))
+    rows = direct(os.path.join(FOLDER, "level.glb"), "--receivers", "extras:receives")
     count, plane = len(both), len(values("Plane"))
     mean = ((rows[:count].astype(np.float64) + rows[count + plane:][:count]) / 2).astype(np.float32)
     check(np.array_equal(both, mean), "found other values than the mean of both places")

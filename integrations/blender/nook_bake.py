@@ -99,12 +99,12 @@ class Level:
         self.json["meshes"].append({"primitives": [{"attributes": attributes, "indices": indices}]})
         return len(self.json["meshes"]) - 1
 
-    def place(self, mesh, matrix_world, name):
+    def place(self, mesh, matrix_world, name, **extras):
         matrix = Y_UP @ np.array(matrix_world)
         if not np.isfinite(matrix).all():
             raise Refused(f"{name}: found a transform that is not finite, expected numbers")
         self.json["scenes"][0]["nodes"].append(len(self.json["nodes"]))
-        self.json["nodes"].append({"mesh": mesh, "name": name, "matrix": matrix.T.ravel().tolist()})
+        self.json["nodes"].append({"mesh": mesh, "name": name, "matrix": matrix.T.ravel().tolist(), "extras": extras})
 
     def write(self, path):
         self.json["buffers"].append({"byteLength": len(self.binary)})
@@ -173,7 +173,7 @@ class Job:
             with open(self.path("errors"), "wb") as errors:
                 self.process = subprocess.Popen(
                     [program, "bake", "scene.glb", "--radius", f"{settings.radius:.7g}", "--rays", str(settings.rays),
-                     "-o", "values.npy", "--progress", "progress"],
+                     "--receivers", "extras:receives", "-o", "values.npy", "--progress", "progress"],
                     cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors)
         except OSError as error:
             shutil.rmtree(self.folder, ignore_errors=True)
@@ -236,7 +236,7 @@ class Job:
             fits = topology(shown) == shape
             if fits:
                 arrays = geometry(shown, domain)
-                level.place(level.mesh(item.name, *arrays), source.matrix_world, item.name)
+                level.place(level.mesh(item.name, *arrays), source.matrix_world, item.name, receives=True)
                 self.receivers.append((mesh.name, shape, len(arrays[0])))
             source.to_mesh_clear()
             if fits:

@@ -45,8 +45,8 @@ if ! { cmake --preset "$target" -S "$source" -B "$build" &&
 	tail -n 40 "$folder/log"
 	finish
 fi
-# there ARGUMENT...: runs the program. Wine itself now and then ends a program at its start, with exit code 1 and no word; nook has
-# none without a line, so that is no answer of its, and it is started again.
+# there ARGUMENT...: runs the program. Wine now and then ends a program at its start, with exit code 1 and no output. nook never fails
+# without a line, so the program is started again, and the end of the test says so.
 there()
 {
 	$run "$build/tools/$program" "$@" 2>"$folder/said"
@@ -205,4 +205,5 @@ if [ "$target" = wasm ]; then
 	fi
 	npx --no-install nook-patterns pattern --domain disk --count 5 -o a.json && same a.json "$source/patterns/disk/disk_005.json" "npx: other bytes"
 fi
+[ ! -e "$folder/again" ] || cat "$folder/again"
 finish

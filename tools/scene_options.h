@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options that several verbs share: which level and how its file is read, cameras and pictures of it, G-buffers, and features of methods.
+// Options that several verbs share: which level and how its file is read, cameras and pictures of it, G-buffers, and features of
+// methods.
 #pragma once
 
 #include "options.h"

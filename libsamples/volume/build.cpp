@@ -243,7 +243,7 @@ void findOccluders(BuiltVolumes& built, const Level& level, const Tracer* tracer
 			checkMemory(level, settings, pieces, "polygons that an extent cuts to", built);
 		}
 	};
-	if (simplifies(settings))
+	if (simplifies(settings) && settings.occluding == nullptr) // the tracer numbers the triangles of the whole level
 	{
 		runOnce(
 			"backs", [&] { occluding.one_sided = idleBacks(*tracer, settings.distance_m, withoutUnits(run)); },

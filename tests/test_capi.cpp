@@ -132,6 +132,8 @@ TEST_CASE("capi: parts are ignored where a level is loaded, and chosen where it 
 	CHECK(bake(ignoring, options).values<float>("visibility").size() == 3);
 	CHECK_THROWS_WITH(bake(ignoring, Options().set("radius", 1.0).set("ignore", "Wall")),
 					  Catch::Contains("ignore: found with a level that is loaded"));
+	CHECK_THROWS_WITH(bake(ignoring, Options().set("radius", 1.0).set("unit", 2.0)),
+					  Catch::Contains("unit: found with a level that is loaded"));
 	CHECK_THROWS_WITH(bake(ignoring, Options().set("radius", 1.0).set("occluders", "Floor")),
 					  Catch::Contains("occluders: found 'Floor', expected parts of a.obj: '/Wall'"));
 }
@@ -289,6 +291,34 @@ TEST_CASE("capi: progress cancels, also by throwing", "[capi]")
 		});
 	CHECK(told > 4);
 	statusOf([](void*, const char*, double) -> int32_t { throw 1; });
+}
+
+TEST_CASE("capi: a progress callback may make calls of its own", "[capi]")
+{
+	const auto nested = [](void* user, const char*, double) -> int32_t
+	{
+		auto& calls = *static_cast<int*>(user);
+		const Options options = Options().set("radius", 1.0).set("rays", 16).set("threads", 4);
+		nook_level* level = nullptr;
+		nook_result* result = nullptr;
+		// The callback that runs is not called again by the call that it makes.
+		if (calls < 3 && nook_level_load("builtin:cornell", nullptr, &level) == NOOK_OK &&
+			nook_run_bake(level, options.get(), &result) == NOOK_OK)
+		{
+			++calls;
+		}
+		nook_result_destroy(result);
+		nook_level_destroy(level);
+		return 0;
+	};
+	int calls = 0;
+	const Options options = Options().set("radius", 1.0).set("rays", 64).set("threads", 4);
+	check(nook_options_progress(options.get(), nested, &calls));
+	const Level level = Level::load("builtin:cornell");
+	const Result with = bake(level, options);
+	CHECK(calls == 3);
+	const Result without = bake(level, Options().set("radius", 1.0).set("rays", 64));
+	CHECK(with.values<float>("visibility") == without.values<float>("visibility"));
 }
 
 TEST_CASE("capi: one level in several threads, destroyed while it is used", "[capi]")

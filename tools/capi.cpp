@@ -289,12 +289,13 @@ std::string matrixText(const nook_array* array, const char* name)
 
 // ---- Calls ----
 
-// Passes progress on, one thread at a time, and throws once the callback has asked to cancel.
+// Passes progress on, and throws once the callback has asked to cancel. While it runs, reports of other threads are left out: they
+// must not wait for a callback that makes a call of its own, whose loops may take up their work.
 Progress progressOf(nook_progress callback, void* user)
 {
 	struct State
 	{
-		std::mutex mutex;
+		std::atomic_flag busy;
 		std::atomic<const char*> cancelled = nullptr;
 	};
 	if (callback == nullptr)
@@ -303,9 +304,8 @@ Progress progressOf(nook_progress callback, void* user)
 	}
 	return [callback, user, state = std::make_shared<State>()](std::string_view stage, double share)
 	{
-		if (state->cancelled == nullptr)
+		if (state->cancelled == nullptr && !state->busy.test_and_set())
 		{
-			const std::lock_guard lock(state->mutex);
 			try
 			{
 				if (callback(user, std::string(stage).c_str(), share) != 0)
@@ -317,6 +317,7 @@ Progress progressOf(nook_progress callback, void* user)
 			{
 				state->cancelled = "progress: found a callback that throws, expected one that returns";
 			}
+			state->busy.clear();
 		}
 		if (const char* const why = state->cancelled; why != nullptr && share < 1.0)
 		{
@@ -499,10 +500,19 @@ nook_status called(Verb (*add)(CLI::App& app), const nook_options* options, nook
 		Prepared prepared;
 		prepare(prepared);
 		const GivenOptions given(options);
-		if (prepared.level != nullptr && std::any_of(given.words.begin(), given.words.end(),
-													 [](const std::string& word) { return word.starts_with("--ignore="); }))
+		if (prepared.level != nullptr)
 		{
-			refuse("ignore: found with a level that is loaded, expected it where the level is");
+			CLI::App loading;
+			LoadSettings load;
+			addLoadOptions(loading, load);
+			for (const std::string& word : given.words)
+			{
+				const std::string name = word.substr(2, word.find('=') - 2);
+				if (loading.get_option_no_throw("--" + name) != nullptr)
+				{
+					refuse(name + ": found with a level that is loaded, expected it where the level is");
+				}
+			}
 		}
 		runCalled(add, prepared, given, result);
 	};
@@ -686,7 +696,7 @@ nook_status nook_level_load(const char* path, const nook_options* options, nook_
 		addOptions(app, {threadsRow(threads)});
 		given.parse(app, {});
 		const auto data = std::make_shared<LevelData>();
-		data->name = path;
+		data->name = (path[0] == '-' ? "./" : "") + std::string(path); // not an option of later calls
 		data->words = given.words;
 		std::erase_if(data->words, [](const std::string& word) { return word.starts_with("--threads="); });
 		data->loaded = std::make_shared<LoadedLevel>(loadLevel(data->name, load, {threads, given.progress, nullptr}));

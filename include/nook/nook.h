@@ -81,8 +81,8 @@ typedef struct nook_options nook_options;
 typedef struct nook_level nook_level;
 typedef struct nook_result nook_result;
 
-/* Called with a stage's name and its share, 0 to 1, one thread at a time, though not always the same. Other values than 0 cancel the
- * call, which then returns NOOK_CANCELLED. */
+/* Called with a stage's name and its share, 0 to 1, one thread at a time, though not always the same; it may make calls of its own.
+ * Other values than 0 cancel the call, which then returns NOOK_CANCELLED. */
 typedef int32_t (*nook_progress)(void *user, const char *stage, double share);
 
 /* ---- The library ---- */

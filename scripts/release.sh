@@ -38,21 +38,23 @@ tested()
 }
 
 system=$(. /etc/os-release && echo "$PRETTY_NAME")
-if built nook release; then
+if built all release; then
+	release=$PWD/build/release
 	packaging/portable.sh build/release "$out"
-	tested "nook-*-linux-x86_64.tar.xz" "an empty root on $system" sh tests/portable_test.sh "$PWD/build/release/tools/nook" . build/release
-fi
-if built all library; then
-	library=$PWD/build/library
-	(cd "$library" && cpack -G DEB -B "$out" >/dev/null)
+	tested "nook-*-linux-x86_64.tar.xz" "an empty root on $system" sh tests/portable_test.sh "$release/tools/nook" . build/release
+	(cd "$release" && cpack -G DEB -B "$out" >/dev/null)
 	rm -rf "$out/_CPack_Packages"
-	tested "*.deb" "lintian and an empty root on $system" sh tests/debian_test.sh "$library/tools/nook" . "$library"
-	tested "libnook1_*.deb, libnook-dev_*.deb" "C, C++ and C# on $system" sh tests/library_test.sh "$library/tools/nook" . "$library"
-	cmake --install "$library" --prefix "$scratch/installed" >/dev/null
+	tested "*.deb" "lintian and an empty root on $system" sh tests/debian_test.sh "$release/tools/nook" . "$release"
+	tested "libnook1_*.deb, libnook-dev_*.deb" "C, C++ and C# on $system" sh tests/library_test.sh "$release/tools/nook" . "$release"
+	cmake --install "$release" --prefix "$scratch/installed" >/dev/null
 	packaging/wheel.sh "$scratch/installed" "$out"
 	python3 -m zipfile -e "$out"/nook-*.whl "$scratch/wheel/python"
 	chmod +x "$scratch"/wheel/python/nook/lib/nook_*_worker # as pip does
-	tested "nook-*.whl" "Python on $system" /usr/bin/python3 tests/python_test.py "$library/tools/nook" "$scratch/wheel" "$scratch/wheel/python/nook/lib/libnook.so.1"
+	tested "nook-*.whl" "Python on $system" /usr/bin/python3 tests/python_test.py "$release/tools/nook" "$scratch/wheel" "$scratch/wheel/python/nook/lib/libnook.so.1"
+	sh npm/ao/pack.sh "$release/tools/nook" "$scratch/ao" && (cd "$scratch/ao" && npm pack --pack-destination "$out" >/dev/null 2>&1)
+	tested "nook-ao-*.tgz" "Chromium on $system" sh tests/npm_ao_test.sh "$release/tools/nook" . "$release/npm_bundlers"
+	cp integrations/blender/nook_bake.py "$out"
+	tested "nook_bake.py" "Blender on $system" sh tests/blender_test.sh "$release/tools/nook" .
 fi
 if built all aarch64 -DCMAKE_EXE_LINKER_FLAGS=-static; then
 	packaging/portable.sh build/aarch64 "$out"

@@ -3,14 +3,14 @@
 # Installs missing packages for building and testing nook on Debian 12. Quick if nothing is missing.
 # Usage: setup.sh [aarch64] [windows] [wasm] [debian] [targets] [farm] [library] [ogre] [godot] [blender]. The first three add cross
 # compilers and emulators for ARM64, Windows and the browser, `debian` adds packaging tools, `targets` all four; `farm` adds the
-# engines that scripts/farm.sh starts, `library` the tools for libnook's tests and wheel, `ogre` and `godot` the engines of these
+# engines that scripts/farm.sh starts, `library` the tools for the wheel and its figures, `ogre` and `godot` the engines of these
 # examples, `blender` Blender for the test of its add-on.
 set -eu
 
 packages="g++ clang llvm libclang-rt-14-dev cmake ninja-build make ccache git
 	libcgal-dev libboost-dev libeigen3-dev libopenimageio-dev libopenexr-dev libpng-dev libjpeg-dev zlib1g-dev libglm-dev libtbb-dev libcli11-dev nlohmann-json3-dev
 	libmeshoptimizer-dev libdraco-dev libassimp-dev libembree-dev libepoxy-dev libglfw3-dev libegl-dev libegl-mesa0 libgl1-mesa-dri pkg-config
-	catch2 libbenchmark-dev libvulkan-dev mesa-vulkan-drivers glslang-tools spirv-tools openimageio-tools xz-utils locales qemu-user-static xvfb xauth chromium fonts-dejavu-core mkdocs python3 mono-mcs abigail-tools"
+	catch2 libbenchmark-dev libvulkan-dev mesa-vulkan-drivers glslang-tools spirv-tools openimageio-tools xz-utils locales qemu-user-static xvfb xauth chromium fonts-dejavu-core mkdocs python3-numpy mono-mcs mono-runtime abigail-tools"
 
 # For Khronos' glTF validator in one test. Other Node.js builds include npm and conflict with Debian's.
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
@@ -25,7 +25,7 @@ for target in "$@"; do
 	windows) packages="$packages g++-mingw-w64-x86-64-posix wine64" ;;
 	wasm) packages="$packages emscripten node-typescript" ;;
 	debian) packages="$packages lintian dpkg-dev fakeroot" ;;
-	library) packages="$packages python3-numpy python3-matplotlib patchelf mono-mcs mono-runtime" ;;
+	library) packages="$packages python3-matplotlib patchelf" ;;
 	ogre) packages="$packages libogre-1.12-dev" ;;
 	godot) packages="$packages godot3" ;;
 	blender) packages="$packages blender" ;;

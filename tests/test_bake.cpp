@@ -284,6 +284,48 @@ TEST_CASE("bake: only chosen parts darken, and only chosen parts get values", "[
 	}
 }
 
+TEST_CASE("bake: a coarse level has the values of the detailed one that it stands for", "[bake]")
+{
+	// Steps of 0.2 m on a floor beside a wall, and a floor for all of them.
+	Level detailed = emptyLevel();
+	addFloor(detailed, {-2.0, 0.0, -2.0}, 4.0, 8);
+	addBox(detailed, {-2.0, 0.0, -2.0}, {-1.0, 0.2, 2.0});
+	addBox(detailed, {1.5, 0.0, -2.0}, {1.7, 2.0, 2.0});
+	Level coarse = emptyLevel();
+	addFloor(coarse, {-1.9, 0.1, -1.9}, 3.3, 34);
+	const Tracer tracer(detailed, {});
+	const auto valuesOf = [&](double cage_m, BakeFit fit)
+	{
+		BakeSettings settings = within(1.5);
+		settings.fit = fit;
+		settings.receivers = &coarse;
+		settings.cage_m = cage_m;
+		const VertexBake bake = bakeVertices(tracer, settings, {});
+		const BakeCheck check = checkBake(tracer, coarse, bake, settings, 2000, {});
+		CHECK((check.missed == 0) == (cage_m > 0.1));
+		return bake.visibility;
+	};
+	for (const BakeFit fit : {BakeFit::surface, BakeFit::points})
+	{
+		const std::vector<float> values = valuesOf(0.15, fit);
+		CHECK(valuesOf(0.05, fit) != values); // meets neither the steps nor the floor
+		ReferenceSettings rays = raysOf(within(1.5), 1024, 7);
+		for (std::size_t v = 0; v < values.size(); v += 7)
+		{
+			const glm::dvec3 at = coarse.positions[v];
+			if (std::fabs(at.x + 1.0) < 0.11)
+			{
+				continue; // the edge of the steps lies within a triangle
+			}
+			const glm::dvec3 place(at.x, at.x < -1.0 ? 0.2 : 0.0, at.z);
+			const double known =
+				referenceAtPoints(tracer, std::vector<ReferencePoint>{{place, {0.0, 1.0, 0.0}, 0.0}}, rays, {})[0].visibility;
+			CAPTURE(at.x, at.z, known, values[v]);
+			CHECK(std::fabs(static_cast<double>(values[v]) - known) < 0.06);
+		}
+	}
+}
+
 TEST_CASE("bake: bent normals beside a wall without end lean away from it", "[bake]")
 {
 	Level level = emptyLevel();

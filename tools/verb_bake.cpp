@@ -62,6 +62,7 @@ struct BakeOptions
 	BakeInstances instances = BakeInstances::separate;
 	std::vector<std::string> occluders;
 	std::vector<std::string> receivers;
+	std::string from; // the detailed level; empty: none
 	const CLI::App* app = nullptr;
 	Outputs outputs;
 };
@@ -163,6 +164,15 @@ void declare(CLI::App& app, BakeOptions& options)
 		 partsRow("--receivers", options.receivers,
 				  "The only parts that get values, chosen as by --ignore; the others stay as they are (default: all)",
 				  ofVertices({{"--max-error", "one of them, since the file of split triangles has all parts"}})),
+		 {"--from",
+		  takesText(options.from, "FILE"),
+		  "A detailed level that this one stands for: values are those of its surface, and rays meet it alone",
+		  {.excludes = {{"--probes or --volumes or --occluders", "one of them, since rays meet only the detailed level"}},
+		   .needs = {{"--cage", "both or none"}}}},
+		 {"--cage",
+		  takesNumber(settings.cage_m, 1e-6, 1e9),
+		  "With --from: metres within which the detailed surface lies on either side, along the normals of vertices",
+		  {.needs = {{"--from", "both or none"}}}},
 		 {"--texture", takesWhole(options.texture_px, kLeastTexture_px, kMostTexture_px),
 		  "Texels across of an occlusion texture, in place of values at vertices; by the level's second texture coordinates or by "
 		  "the first",
@@ -258,8 +268,16 @@ void addSettings(Facts& facts, const BakeOptions& options)
 }
 
 // How far the bake is from rays; `where` they were asked.
-void addCheck(Facts& facts, const BakeCheck& check, const std::string& where)
+void addCheck(Facts& facts, const BakeOptions& options, const BakeCheck& check, const std::string& where)
 {
+	if (!options.from.empty())
+	{
+		facts.text("from", options.from);
+		facts.number("cage_m", options.settings.cage_m);
+		facts.whole("check_missed", check.missed);
+		facts.line("cage: " + std::to_string(check.missed) + " of " + std::to_string(check.points + check.buried) +
+				   " points met no front of the detailed surface");
+	}
 	facts.whole("check_points", check.points);
 	facts.whole("check_buried", check.buried);
 	facts.whole("check_shut", check.shut);
@@ -313,6 +331,12 @@ struct BakeInput
 	bool in_place = false;             // the level's own glTF file takes the values
 	std::vector<uint8_t> receivers;    // 1 for each triangle that gets values; empty: all
 	std::optional<LevelPart> part;     // these triangles
+	std::optional<Level> coarse{};     // that stands for the tracer's level (--from)
+
+	const Level& level() const
+	{
+		return coarse ? *coarse : tracer.level();
+	}
 };
 
 // Values per vertex of the level: NaN where it receives none.
@@ -350,7 +374,7 @@ GltfBake bakeOf(const BakeOptions& options)
 	std::string command = "nook";
 	for (const std::string& word : commandWords(*options.app))
 	{
-		const bool path = word == options.level.level || word == options.volumes;
+		const bool path = word == options.level.level || word == options.volumes || word == options.from;
 		command += " " + (path ? nativePath(word).filename().string() : word);
 	}
 	bake.record = {
@@ -381,12 +405,12 @@ GltfBaked write(const BakeOptions& options, const BakeInput& input, const Level&
 	std::optional<GltfFile> file;
 	if (input.in_place)
 	{
-		places = loadPlaces(options.level.level, options.level.load, input.tracer.level(), options.receivers, how);
+		places = loadPlaces(options.level.level, options.level.load, input.level(), options.receivers, how);
 		file = fileOf(options);
 	}
 	else
 	{
-		file = openGlb(levelGlb(input.part ? input.tracer.level() : level, kProgram, places), level.name);
+		file = openGlb(levelGlb(input.part ? input.level() : level, kProgram, places), level.name);
 		std::erase_if(places, [&input](const GltfPlace& place) { return input.part && input.receivers[place.triangle] == 0; });
 	}
 	for (std::size_t i = 0; input.part && i < places.size(); ++i)
@@ -459,7 +483,7 @@ void turnBack(const BakeInput& input, const Level& level, VertexBake& bake)
 Made makeVertices(const BakeOptions& options, const BakeInput& input, Facts& facts, const RunSettings& how)
 {
 	BakeSettings settings = options.settings;
-	const Level& receiving = input.part ? input.part->level : input.tracer.level();
+	const Level& receiving = input.part ? input.part->level : input.level();
 	settings.receivers = &receiving;
 	VertexBake bake = bakeVertices(input.tracer, settings, how);
 	std::optional<Level> turned;
@@ -504,7 +528,7 @@ Made makeVertices(const BakeOptions& options, const BakeInput& input, Facts& fac
 		give<uint32_t>("triangles", level.triangles, {level.triangles.size(), 3});
 	}
 	addResult(facts, options, bake);
-	addCheck(facts, check, "other points of the surface");
+	addCheck(facts, options, check, "other points of the surface");
 	if (settings.base)
 	{
 		facts.number("rmse_of_volumes", check.rmse_without);
@@ -532,7 +556,9 @@ Made makeVertices(const BakeOptions& options, const BakeInput& input, Facts& fac
 
 Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& facts, const RunSettings& how)
 {
-	const Level& level = input.tracer.level();
+	const Level& level = input.level();
+	BakeSettings settings = options.settings;
+	settings.receivers = &level;
 	uint32_t set = 1;
 	std::vector<glm::vec2> of_file = loadSecondUvs(options.level.level, options.level.load, level, how, set);
 	const bool second = !of_file.empty();
@@ -542,8 +568,8 @@ Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& fact
 		of_file = loadSecondUvs(options.level.level, options.level.load, level, how, set);
 	}
 	const std::vector<glm::vec2>& uvs = of_file.empty() ? level.uvs : of_file;
-	const TextureBake bake = bakeTexture(input.tracer, uvs, options.texture_px, options.settings, how);
-	const BakeCheck check = checkTexture(input.tracer, uvs, bake, options.settings, kCheckPoints, how);
+	const TextureBake bake = bakeTexture(input.tracer, uvs, options.texture_px, settings, how);
+	const BakeCheck check = checkTexture(input.tracer, uvs, bake, settings, kCheckPoints, how);
 	if (isShare(how))
 	{
 		return {};
@@ -574,7 +600,7 @@ Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& fact
 	facts.whole("png_bytes", png.size());
 	facts.number("rms_standard_error", bake.standard_error);
 	facts.line("standard error: " + roundedText(bake.standard_error, 3) + " of a texel");
-	addCheck(facts, check, "points of the surface");
+	addCheck(facts, options, check, "points of the surface");
 	addFile(facts, input, baked);
 	return made;
 }
@@ -608,7 +634,7 @@ Made makeProbes(const BakeOptions& options, const Tracer& tracer, Facts& facts, 
 			   std::to_string(4 * grid.texels.size()) + " bytes");
 	facts.number("rms_standard_error", grid.standard_error);
 	facts.line("standard error: " + roundedText(grid.standard_error, 3) + " of the mean over normals");
-	addCheck(facts, check, "points in the open");
+	addCheck(facts, options, check, "points in the open");
 	return made;
 }
 
@@ -616,7 +642,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 {
 	settle(options);
 	const bool probes = options.probes_m > 0.0;
-	std::vector<std::string> inputs{options.level.level, options.volumes};
+	std::vector<std::string> inputs{options.level.level, options.volumes, options.from};
 	std::erase(inputs, "");
 	const std::string ending = endingOf(options.level.level);
 	const bool is_gltf = ending == ".gltf" || ending == ".glb";
@@ -643,6 +669,14 @@ void run(BakeOptions& options, VerbProgress& progress)
 		options.settings.base = visibilityByVolumes(options.volumes, options.mask ? options.directions : 0, how);
 		read.push_back(options.volumes);
 	}
+	std::optional<LoadedLevel> detailed;
+	if (!options.from.empty())
+	{
+		LoadSettings load = options.level.load;
+		load.ignore.clear(); // parts of the other level
+		detailed = loadLevel(options.from, load, how);
+		read.insert(read.end(), detailed->level.files.begin(), detailed->level.files.end());
+	}
 	addInputs(read, how);
 	const bool is_cell =
 		std::any_of(loaded.level.meshes.begin(), loaded.level.meshes.end(), [](const Mesh& mesh) { return mesh.around; });
@@ -654,11 +688,15 @@ void run(BakeOptions& options, VerbProgress& progress)
 		triangles.clear();
 	}
 	const std::vector<uint8_t> occluders = chosenTriangles(loaded.level, options.occluders, "occluders");
-	BakeInput input{Tracer(loaded.level, how, nullptr, occluders),
+	BakeInput input{Tracer(detailed ? detailed->level : loaded.level, how, nullptr, occluders),
 					std::move(triangles),
 					in_place,
 					chosenTriangles(loaded.level, options.receivers, "receivers"),
 					{}};
+	if (detailed)
+	{
+		input.coarse = loaded.level;
+	}
 	if (!input.receivers.empty())
 	{
 		input.part = partOf(loaded.level, input.receivers, how.threads);

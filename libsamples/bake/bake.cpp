@@ -53,7 +53,11 @@ std::vector<ReferencePoint> pointsOf(const Level& level, const Unknowns& unknown
 VertexBake atPoints(const Tracer& tracer, const Unknowns& unknowns, const BakeSettings& settings, const RunSettings& run)
 {
 	const Level& level = surfaceOf(tracer, settings);
-	const std::vector<ReferencePoint> points = pointsOf(level, unknowns);
+	std::vector<ReferencePoint> points = pointsOf(level, unknowns);
+	for (ReferencePoint& point : points)
+	{
+		point = startOf(tracer, point, point.normal, settings);
+	}
 	ReferenceSettings how = raysOf(settings, settings.rays, settings.seed);
 	how.measure = settings.bent ? ReferenceMeasure::bent : ReferenceMeasure::obscurance;
 	const std::vector<ReferenceValue> values = referenceAtPoints(tracer, points, how, run);
@@ -230,6 +234,7 @@ BakeCheck checkValues(const Tracer& tracer, const Level& baked, const std::funct
 	BakeCheck check;
 	for (const SurfaceSample& sample : samples)
 	{
+		check.missed += sample.missed ? 1U : 0U;
 		if (sample.buried)
 		{
 			check.buried += 1;

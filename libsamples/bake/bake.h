@@ -51,7 +51,10 @@ struct BakeSettings
 	double few = 0.0; // [0, 1): stop earlier if less than this fraction of the triangles could be split further
 	BakeSides sides = BakeSides::separate;
 	bool bent = false;                // also bake bent normals (ReferenceMeasure::bent)
-	const Level* receivers = nullptr; // the part of the tracer's level that gets values, at vertices; null: all of it
+	const Level* receivers = nullptr; // what gets values: a part of the tracer's level, or with cage_m another; null: all of it
+	// > 0: the tracer's level is the detailed one that `receivers` stands for. Rays of a point start where a line along its smooth
+	// normal first meets that, from this far outside to as far inside; at the point itself if it does not.
+	double cage_m = 0.0;
 
 	// Visibility that another method draws at a point with a unit normal: the bake then stores the difference from it, −1 to 1.
 	// Requires BakeFit::surface without bent normals. Called from any thread.
@@ -65,6 +68,7 @@ struct BakeCheck
 	std::size_t buried = 0;
 	std::size_t shut = 0; // points in gaps where hardly any ray escapes
 	std::size_t rays = 0;
+	std::size_t missed = 0;      // points that met no detailed surface (BakeSettings::cage_m)
 	double rmse = 0.0;           // includes the rays' own standard error
 	double rmse_seen = 0.0;      // without points in gaps
 	double bias = 0.0;           // mean of bake − rays

@@ -472,7 +472,7 @@ VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const 
 {
 	assert(settings.max_error > 0.0 && settings.fit == BakeFit::surface);
 	VertexBake bake;
-	Level& level = bake.refined.emplace(tracer.level());
+	Level& level = bake.refined.emplace(surfaceOf(tracer, settings));
 	const int rays = std::min(settings.rays, kRaysOfPoint);
 	const std::vector<double> all_areas = areasOf(level);
 	const Density density = densityOf(tracer, settings, rays, std::accumulate(all_areas.begin(), all_areas.end(), 0.0));

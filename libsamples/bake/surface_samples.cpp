@@ -59,19 +59,24 @@ ReferencePoint flatPointOf(const Level& level, const SurfaceSample& sample)
 	return {position, (sample.back ? -1.0 : 1.0) * geometricNormal(level, sample.triangle), 0.0};
 }
 
-ReferencePoint pointOf(const Level& level, const SurfaceSample& sample, NormalKind normals)
+// Where its rays start; `flat`: with the normal of the triangle, whatever the settings say.
+ReferencePoint pointOf(const Tracer& tracer, const Level& level, SurfaceSample& sample, const BakeSettings& settings, bool flat)
 {
 	ReferencePoint point = flatPointOf(level, sample);
-	if (normals == NormalKind::interpolated)
+	const bool smooth = settings.normals == NormalKind::interpolated && !flat;
+	if (!smooth && settings.cage_m == 0.0)
 	{
-		const glm::dvec2 at(static_cast<double>(sample.b), static_cast<double>(sample.c));
-		point.normal = (sample.back ? -1.0 : 1.0) * interpolatedNormal(level, sample.triangle, at);
+		return point;
 	}
-	return point;
+	const glm::dvec2 at(static_cast<double>(sample.b), static_cast<double>(sample.c));
+	const glm::dvec3 normal = (sample.back ? -1.0 : 1.0) * interpolatedNormal(level, sample.triangle, at);
+	point.normal = smooth ? normal : point.normal;
+	return startOf(tracer, point, normal, settings, &sample.missed);
 }
 
 // Finds the samples inside matter.
-void findBuried(const Tracer& tracer, const Level& level, std::span<SurfaceSample> samples, const RunSettings& run)
+void findBuried(const Tracer& tracer, const Level& level, std::span<SurfaceSample> samples, const BakeSettings& settings,
+				const RunSettings& run)
 {
 	constexpr std::size_t kChunk = 256;
 	constexpr double kRays = 9.0; // rays traced by isBuried()
@@ -83,7 +88,7 @@ void findBuried(const Tracer& tracer, const Level& level, std::span<SurfaceSampl
 	{
 		for (SurfaceSample& sample : chunk(unit))
 		{
-			const ReferencePoint point = flatPointOf(level, sample);
+			const ReferencePoint point = pointOf(tracer, level, sample, settings, true);
 			sample.buried = isBuried(tracer, point.position + tracer.error() * point.normal, point.normal);
 		}
 	};
@@ -92,6 +97,10 @@ void findBuried(const Tracer& tracer, const Level& level, std::span<SurfaceSampl
 		for (SurfaceSample& sample : chunk(unit))
 		{
 			archive(sample.buried);
+			if (settings.cage_m > 0.0)
+			{
+				archive(sample.missed);
+			}
 		}
 	};
 	const auto cost = [&](std::size_t unit)
@@ -184,6 +193,31 @@ std::vector<SurfaceSample> SamplePlaces::all() const
 	return samples;
 }
 
+ReferencePoint startOf(const Tracer& tracer, const ReferencePoint& point, glm::dvec3 along, const BakeSettings& settings,
+					   bool* missed)
+{
+	if (settings.cage_m == 0.0)
+	{
+		return point;
+	}
+	const glm::dvec3 from = point.position + settings.cage_m * along;
+	const RayHit hit = tracer.nearest(from, -along, 2.0 * settings.cage_m);
+	const Level& detailed = tracer.level();
+	const bool found = hit.hit && (hit.front || hasTwoSides(detailed, hit.triangle));
+	if (missed != nullptr)
+	{
+		*missed = !found;
+	}
+	if (!found)
+	{
+		return point;
+	}
+	const glm::dvec3 normal = settings.normals == NormalKind::interpolated
+								  ? interpolatedNormal(detailed, hit.triangle, hit.barycentric)
+								  : geometricNormal(detailed, hit.triangle);
+	return {from - hit.distance * along, hit.front ? normal : -normal, 0.0};
+}
+
 void countUnseen(std::span<const SurfaceSample> samples, VertexBake& bake)
 {
 	for (const SurfaceSample& sample : samples)
@@ -245,10 +279,10 @@ void traceSamples(const Tracer& tracer, const Level& level, std::size_t count, c
 	for (std::size_t first = 0; first < count; first += kBlock)
 	{
 		const std::span<SurfaceSample> block = block_at(first, std::min(kBlock, count - first));
-		findBuried(tracer, level, block, run);
+		findBuried(tracer, level, block, settings, run);
 		const auto pointAt = [&](std::size_t i)
 		{
-			return pointOf(level, block[i], settings.normals);
+			return pointOf(tracer, level, block[i], settings, false);
 		};
 		how.seed = seed + static_cast<uint32_t>(first / kBlock) * 0x9e3779b9U; // another sequence for each block
 		const std::vector<ReferenceValue> values = referenceAtPoints(tracer, block.size(), pointAt, how, withoutProgress(run));

@@ -25,6 +25,7 @@ struct SurfaceSample
 	bool back = false;    // on the clockwise side
 	bool buried = false;  // inside matter
 	bool shut = false;    // in a gap so narrow that hardly any ray escapes
+	bool missed = false;  // met no detailed surface
 };
 
 // The triangles that get values.
@@ -58,6 +59,11 @@ private:
 	uint32_t m_seed;
 	std::vector<std::size_t> m_first; // start of each triangle's samples, and the end
 };
+
+// Where a point's rays start, with BakeSettings::cage_m on the detailed surface; `along` is the smooth normal, `missed` set if
+// given.
+ReferencePoint startOf(const Tracer& tracer, const ReferencePoint& point, glm::dvec3 along, const BakeSettings& settings,
+					   bool* missed = nullptr);
 
 // Counts the samples inside matter, and of the others those in gaps.
 void countUnseen(std::span<const SurfaceSample> samples, VertexBake& bake);

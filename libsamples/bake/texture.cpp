@@ -394,8 +394,8 @@ void fillEmpty(std::vector<float>& values, int size_px)
 TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, int size_px, const BakeSettings& settings,
 						const RunSettings& run)
 {
-	assert(size_px >= kLeastTexture_px && size_px <= kMostTexture_px && uvs.size() == tracer.level().positions.size());
-	const Level& level = tracer.level();
+	assert(size_px >= kLeastTexture_px && size_px <= kMostTexture_px && uvs.size() == surfaceOf(tracer, settings).positions.size());
+	const Level& level = surfaceOf(tracer, settings);
 	checkUvs(level, uvs);
 	TextureBake bake;
 	bake.size_px = size_px;
@@ -442,7 +442,7 @@ BakeCheck checkTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, con
 	mask.wrap_u = Wrap::clamp;
 	mask.wrap_v = Wrap::clamp;
 	mask.alpha = bake.values;
-	const Level& level = tracer.level();
+	const Level& level = surfaceOf(tracer, settings);
 	const auto valueOf = [&](const SurfaceSample& sample)
 	{
 		return alphaAt(mask, glm::dvec2(interpolated(uvs, level.triangles[sample.triangle], sample.b, sample.c)));

@@ -281,6 +281,11 @@ TEST_CASE("build: a ground that is open is simplified, and a curtain that is see
 		CHECK((built.detail->detail == 0.0) == curtain);
 		CHECK((2 * built.set.occluders.polygons.size() < whole.polygons) == !curtain);
 		CHECK(buildVolumes(level, settings, {1, {}}).set.occluders.corners == built.set.occluders.corners);
+		// Chosen occluders have numbers of their own, so open ones are left alone.
+		VolumeSettings chosen = settings;
+		const Level occluders = level;
+		chosen.occluding = &occluders;
+		CHECK(buildVolumes(level, chosen, {2, {}}).detail->detail == 0.0);
 	}
 }
 

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs the libFuzzer target of every parser and of shading, five at a time: fuzz.sh SECONDS [FOLDER [TARGET...]]. FOLDER
+# Runs the libFuzzer target of every parser, of shading and of the C API, five at a time: fuzz.sh SECONDS [FOLDER [TARGET...]]. FOLDER
 # (build/fuzz) is a clang++ build; new inputs are kept in FOLDER/corpus for the next run, and failures in FOLDER/findings.
 # NOOK_PROGRAM: a built program for making seeds; NOOK_FUZZ_SEEDS: a folder with more seeds, one subfolder per target;
 # NOOK_FUZZ_COVERAGE: a folder for each target's coverage output. Exit code 77: no clang++ with libFuzzer. 1: a parser failed.
@@ -9,7 +9,7 @@ source=$(cd "$(dirname "$0")/.." && pwd)
 seconds=${1:?seconds, expected a number of them for each target}
 build=$(realpath -m "${2:-$source/build/fuzz}")
 [ $# -ge 2 ] && shift 2 || shift $#
-targets=${*:-pattern csv glb meshes volumes exr gbuffer report command farm shade}
+targets=${*:-pattern csv glb meshes volumes exr gbuffer report command farm shade capi}
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -89,7 +89,7 @@ cat >list.json <<'EOT'
 EOT
 for file in jobs/plan.json list.json; do seed farm $file; done
 head -c 600 cornell.glb >numbers
-for target in gbuffer shade; do seed $target numbers; done
+for target in gbuffer shade capi; do seed $target numbers; done
 [ -z "${NOOK_FUZZ_SEEDS:-}" ] || cp -r "$NOOK_FUZZ_SEEDS/." "$seeds/"
 
 # run TARGET: fuzzes it.

@@ -205,7 +205,7 @@ private:
 class JpegReader : public PictureReader
 {
 public:
-	explicit JpegReader(std::string_view bytes) : m_bytes(bytes)
+	JpegReader(std::string_view bytes, std::string name) : m_bytes(bytes), m_name(std::move(name))
 	{
 		m_jpeg.err = jpeg_std_error(&m_errors);
 		m_jpeg.client_data = this;
@@ -225,6 +225,8 @@ public:
 			return false;
 		}
 		jpeg_create_decompress(&m_jpeg);
+		m_jpeg.progress = &m_progress;
+		m_progress.progress_monitor = onProgress;
 		jpeg_mem_src(&m_jpeg, reinterpret_cast<const unsigned char*>(m_bytes.data()), m_bytes.size());
 		jpeg_read_header(&m_jpeg, TRUE);
 		width_px = static_cast<int>(m_jpeg.image_width);
@@ -236,6 +238,11 @@ public:
 	{
 		if (setjmp(m_back) != 0)
 		{
+			if (m_jpeg.input_scan_number > kMostScans)
+			{
+				throw Error(ExitCode::invalid_input,
+							m_name + ": found more than " + std::to_string(kMostScans) + " scans, expected fewer");
+			}
 			return false;
 		}
 		if (!m_started)
@@ -255,7 +262,19 @@ private:
 		std::longjmp(self.m_back, 1);
 	}
 
+	static constexpr int kMostScans = 100; // a scan of few bytes may pass over all texels
+	static void onProgress(j_common_ptr jpeg)
+	{
+		auto& self = *static_cast<JpegReader*>(jpeg->client_data);
+		if (self.m_jpeg.input_scan_number > kMostScans)
+		{
+			std::longjmp(self.m_back, 1);
+		}
+	}
+
 	std::string_view m_bytes;
+	std::string m_name;
+	jpeg_progress_mgr m_progress{};
 	jpeg_decompress_struct m_jpeg{};
 	jpeg_error_mgr m_errors{};
 	bool m_started = false;
@@ -406,7 +425,7 @@ std::unique_ptr<PictureReader> openedPicture(std::string_view bytes, const std::
 	}
 	if (all && bytes.starts_with("\xFF\xD8\xFF"))
 	{
-		auto jpeg = std::make_unique<JpegReader>(bytes);
+		auto jpeg = std::make_unique<JpegReader>(bytes, name);
 		const bool begins = jpeg->readHeader();
 		defect = jpeg->defect();
 		return begins && (jpeg->channels == 1 || jpeg->channels == 3) ? std::move(jpeg) : nullptr; // not CMYK

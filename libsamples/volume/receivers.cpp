@@ -291,13 +291,6 @@ Grid gridOf(int count)
 	return {columns, (count + columns - 1) / columns};
 }
 
-glm::dvec3 acrossOf(const Level& level, std::size_t triangle)
-{
-	const glm::uvec3 corner = level.triangles[triangle];
-	const glm::dvec3 a = level.positions[corner.x];
-	return glm::cross(level.positions[corner.y] - a, level.positions[corner.z] - a);
-}
-
 void addViews(const Tracer& tracer, const ReceiverSettings& settings, std::vector<ReferencePoint>& points, const RunSettings& run)
 {
 	const Grid grid = gridOf(settings.per_view);
@@ -324,7 +317,7 @@ public:
 		for (std::size_t i = 0; i < m_until.size(); ++i)
 		{
 			const bool there = level.material_list[level.materials[i]].coverage > 0.0;
-			sum += there ? glm::length(acrossOf(level, i)) : 0.0;
+			sum += there ? glm::length(acrossOf(cornersOf(level, i))) : 0.0;
 			m_until[i] = sum;
 		}
 	}
@@ -370,7 +363,7 @@ void addSurfaces(const Tracer& tracer, double distance_m, const ReceiverSettings
 		const glm::dvec3 c = level.positions[corner[static_cast<int>((turn + 2) % 3)]];
 		double u = random.uniform();
 		double v = random.uniform();
-		const glm::dvec3 across = acrossOf(level, triangle);
+		const glm::dvec3 across = acrossOf(cornersOf(level, triangle));
 		const double area = glm::length(across);
 		if (i >= settings.by_area)
 		{
@@ -423,10 +416,7 @@ std::optional<ReferencePoint> surfaceAlong(const Tracer& tracer, glm::dvec3 from
 	{
 		return std::nullopt;
 	}
-	const Level& level = tracer.level();
-	const glm::uvec3 corner = level.triangles[hit.triangle];
-	const glm::dvec3 a = level.positions[corner.x];
-	const glm::dvec3 across = glm::cross(level.positions[corner.y] - a, level.positions[corner.z] - a);
+	const glm::dvec3 across = acrossOf(cornersOf(tracer.level(), hit.triangle));
 	const double area = glm::length(across);
 	if (!(area > 0.0))
 	{

@@ -53,8 +53,7 @@ void declare(CLI::App& app, TileOptions& options)
 		  "--kind points: each variant's samples in the order whose prefixes err least, for --bands and --counts"},
 		 {"--lambda", takesNumber(recipe.lambda, 1e-6, 1e6),
 		  "Weight of the variants' own error against that of the window (default: by filters and frames)"},
-		 {"--starts", takesWhole(recipe.starts, 1, 1000),
-		  "Independent starts, the best is kept (default: by domain and size)"},
+		 {"--starts", takesWhole(recipe.starts, 1, 1000), "Independent starts, the best is kept (default: by domain and size)"},
 		 seedRow(recipe.seed),
 		 {"--memory", takesBytes(options.memory_bytes), "Refuses, before work starts, a tile that may take more (default 4GiB)"},
 		 {"--name", takesText(options.name, "IDENT"), "Stem of the identifiers in source files (default: from the pattern)"}});

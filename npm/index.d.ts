@@ -43,8 +43,7 @@ export interface PatternOptions extends Watch {
 	method?: 'refine' | 'electro' | 'equal' | 'random' | 'poisson' | 'halton' | 'vogel' | 'lloyd';
 	minimise?: 'rms' | 'noise' | 'cliff' | 'window';
 	weights?: 'voronoi' | 'equal' | 'fitted';
-	voronoi?: 'exact' | 'discrete';
-	order?: 'none' | 'progressive' | 'cache';
+	order?: 'none' | 'progressive';
 	starts?: number;
 	/** 0 to 4294967295; 1 where absent. */
 	seed?: number;
@@ -148,7 +147,7 @@ export type TileOptions =
 	| (TileSettings & {
 		/** What pattern() returned, or the text of its JSON file. */
 		pattern: MadePattern | string;
-		kind?: 'points' | 'transform' | 'even' | 'random';
+		kind?: 'points' | 'even' | 'random';
 		domain?: undefined;
 		count?: undefined;
 	})

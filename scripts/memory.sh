@@ -34,6 +34,6 @@ row 'reference' reference "$level" --gbuffer g.exr --radius "$distance" --rays 6
 row 'bake' bake "$level" --radius "$distance" --rays 16 -o b.glb
 row 'volumes' volumes "$level" --distance "$distance" --compress -o v.glb
 row 'shade --method aov' shade g.exr --method aov --volumes v.glb -o aov.exr
-row 'volumes, every option' volumes "$level" --distance "$distance" --exact-bounds --trim 0.15 --compensate --drop-hidden --compress -o all.glb
+row 'volumes, every option' volumes "$level" --distance "$distance" --exact-bounds --trim 0.15 --compensate --compress -o all.glb
 row 'tune' tune "$level" --budget 1s --methods vo-line --grid quick --size 128x72 --views 1 --rays 16 --repetitions 1
 row 'report error' report error "$level" --quick -o r.html

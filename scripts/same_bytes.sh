@@ -67,7 +67,7 @@ for level in builtin:cornell builtin:courtyard builtin:suburb builtin:cave:3000 
 	both a_$name shade $name.g.exr --method aov --volumes $name.v.glb --device cpu -o $name.aov.exr
 	both m_$name shade $name.g.exr --method aov-mask --volumes $name.v.glb --device cpu -o $name.mask.exr
 done
-both trim volumes builtin:heightfield:2000 --distance 1 --drop-hidden --compensate --trim 0.1 --verify --detail auto -o trim.glb --json trim.json
+both trim volumes builtin:heightfield:2000 --distance 1 --compensate --trim 0.1 --verify --detail auto -o trim.glb --json trim.json
 both packed volumes builtin:suburb --distance 1 --compress -o packed.glb
 both probes bake builtin:cornell --radius 1 --probes 0.5 --rays 48 -o probes.ktx2 -o probes.glsl
 both split bake builtin:cornell --radius 1 --rays 64 --max-error 0.1 -o split.glb

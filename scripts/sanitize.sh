@@ -50,7 +50,7 @@ checked gbuffer builtin:courtyard --camera auto:1 --size 48x27 -o auto.exr
 checked reference builtin:suburb --gbuffer g.exr --radius 1 --rays 64 -o r.exr
 checked reference builtin:suburb --gbuffer g.exr --radius 1 --measure sphere --rays 16 -o s.exr
 checked reference --gbuffer g.exr --radius 1 --measure sphere --from depth --rays 16 -o d.exr
-checked volumes builtin:cornell --distance 0.5 --trim 0.05 --compensate --drop-hidden -o v.glb
+checked volumes builtin:cornell --distance 0.5 --trim 0.05 --compensate -o v.glb
 checked volumes builtin:suburb --distance 0.5 -o large.glb
 for method in vo-line vo-point vo-area alchemy statvo slices; do
 	checked shade g.exr --method $method --device cpu -o $method.exr

@@ -55,7 +55,6 @@ fails 1 "--domain: found 'Disk'" pattern --domain Disk --count 3 -o a.json
 fails 1 "--method: found 'magic'" pattern --domain disk --count 3 --method magic -o a.json
 fails 1 "--minimise: found 'all'" pattern --domain disk --count 3 --minimise all -o a.json
 fails 1 "--weights: found 'x'" $disk --weights x -o a.json
-fails 1 "--voronoi: found 'x'" $disk --voronoi x -o a.json
 fails 1 "--order: found 'x'" $disk --order x -o a.json
 fails 1 "--name: found '9lives'" $disk --name 9lives -o a.h
 fails 1 "--name: found 'a b'" $disk --name 'a b' -o a.h
@@ -68,7 +67,6 @@ fails 1 '--symmetric' pattern --domain sphere --count 5 --symmetric -o a.json
 fails 1 '--symmetric --centre' pattern --domain disk --count 4 --symmetric --centre -o a.json
 fails 1 '--minimise' pattern --domain disk --count 4 --method lloyd --minimise noise -o a.json
 fails 1 '--minimise cliff' pattern --domain ball --count 4 --minimise cliff -o a.json
-fails 1 '--voronoi discrete' pattern --domain disk --count 4 --method equal --voronoi discrete -o a.json
 fails 1 '--weights fitted' pattern --domain disk --count 4 --method equal --weights fitted -o a.json
 fails 1 '--exponent' pattern --domain disk --count 4 --exponent 2 -o a.json
 fails 1 '--starts' $disk --starts 3 -o a.json

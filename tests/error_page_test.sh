@@ -44,11 +44,6 @@ exits 0 '^nook: [1-9][0-9]* results made, [0-9]* from the cache$' "$nook" report
 exits 0 '' "$nook" report error corner.obj $small -o again.html --json again.json --baseline report.json
 checks=$((checks + 1))
 cmp -s report.json again.json || problem "the cache: found another report, expected the same bytes"
-exits 0 '' "$nook" report error corner.obj $small --frames 3 -o frames.html --json frames.json
-exits 0 '' "$nook" report error --join frames.json -o frames_joined.html
-rows=$(grep -c '"motion": ' frames.json)
-checks=$((checks + 1))
-[ "$rows" -gt 20 ] || problem "report error --frames: found $rows rows, expected those of every method, three times"
 sed 's/"eq14": [0-9.e-]*/"eq14": 0.0001/' report.json >better.json
 exits 7 'errors that have grown' "$nook" report error corner.obj $small -o again.html --baseline better.json
 sed 's/"camera": "/"camera": "another /' report.json >elsewhere.json
@@ -59,10 +54,6 @@ checks=$((checks + 1))
 grep -q '"command": "nook report error corner.obj .*--methods statvo,rays' some.json && ! grep -q '"method": "alchemy"' some.json ||
 	problem "report error --methods: found $(head -c 400 some.json), expected statvo and rays alone"
 exits 1 'shifts: found .1., expected 0' "$nook" report error corner.obj --shifts 1
-exits 1 "frames: found '1', expected" "$nook" report error corner.obj --frames 1
-exits 1 "frames: found '1000000', expected" "$nook" report error corner.obj --frames 1000000
-exits 1 "ema: found '0'" "$nook" report error corner.obj --frames 4 --ema 0
-exits 1 'ema: found without --frames' "$nook" report error corner.obj --ema 0.5
 exits 4 '1 of 2 levels that failed' "$nook" report error none.obj corner.obj $small -o failed.html
 exits 4 '1 of 2 levels that failed.*errors that have grown' "$nook" report error none.obj corner.obj $small -o again.html --baseline better.json
 cp corner.obj kept.obj
@@ -141,13 +132,6 @@ for width in 400 1400; do
 done
 drawn joined.html 2 0 1400 light --blink-settings=preferredColorScheme=1
 drawn failed.html 1 1 1400 light --blink-settings=preferredColorScheme=1
-
-for page in frames.html frames_joined.html; do
-	opened $page 1400
-	quiet $page
-	is frames "$rows" $page
-	is overflow false $page
-done
 
 # The check itself must be able to fail: a page whose script is broken, and one that draws a method too few.
 before=$failures

@@ -20,7 +20,7 @@ makes()
 	"$@" reference builtin:suburb --gbuffer here/g.exr --radius 1 --rays 64 -o "$own/r.exr" >log 2>&1 || problem "$own: reference: $(tail -n 1 log)"
 	"$@" reference builtin:suburb --gbuffer here/g.exr --radius 1 --falloff linear --rays 64 -o "$own/linear.exr" >log 2>&1 ||
 		problem "$own: reference, linear: $(tail -n 1 log)"
-	"$@" volumes builtin:cornell --distance 0.5 --drop-hidden --compensate -o "$own/hidden.glb" >log 2>&1 || problem "$own: volumes: $(tail -n 1 log)"
+	"$@" volumes builtin:cornell --distance 0.5 --compensate -o "$own/volumes.glb" >log 2>&1 || problem "$own: volumes: $(tail -n 1 log)"
 }
 
 # makesMuch FOLDER COMMAND...: outputs that take half a minute.

@@ -114,7 +114,6 @@ stages 'level triangles advice' info builtin:cornell
 stages 'level cells' level builtin:cornell --cells 2x2 --around 0.5 -o a.glb
 rm a-*.glb
 stages 'level tree depth' shade kept_g.exr --method slices --radius 0.5 --bake kept_b.glb -o a.exr
-stages 'level sight' volumes builtin:cornell --distance 0.5 --drop-hidden --json a.json -o a.glb
 
 # Errors: the last line has the exit code and the line of stderr.
 printf 'v 0 0 0\nv 1 0 0\nf 1 2 2\n' >kept_bad.obj

@@ -12,11 +12,10 @@ makeSamples()
 		disk_symmetric --domain disk --count 9 --symmetric --starts 4
 		disk_noise --domain disk --count 6 --minimise noise --starts 3
 		disk_electro --domain disk --count 16 --method electro --starts 4 --order progressive
-		disk_discrete --domain disk --count 5 --method electro --voronoi discrete --starts 2
 		disk_fitted --domain disk --count 9 --method lloyd --weights fitted --starts 2
 		disk_equal --domain disk --count 8 --method equal --starts 2
 		ball_refine --domain ball --count 8 --starts 3
-		ball_electro --domain ball --count 12 --centre --method electro --starts 3 --order cache
+		ball_electro --domain ball --count 12 --centre --method electro --starts 3 --order progressive
 		ball_equal --domain ball --count 6 --method equal --starts 2
 		sphere_refine --domain sphere --count 6 --starts 3
 		sphere_thomson --domain sphere --count 12 --exponent 1 --starts 4
@@ -28,7 +27,7 @@ makeSamples()
 	EOT
 	"$1" pattern --domain disk --count 5 --method lloyd --starts 2 --threads "$3" -o "$2/base.json" -o "$2/base.svg" -o "$2/base.csv" ||
 		problem "base: not made"
-	for kind in points transform random; do
+	for kind in points even random; do
 		"$1" tile --pattern "$2/base.json" --size 2 --kind $kind --threads "$3" -o "$2/tile_$kind.json" -o "$2/tile_$kind.exr" ||
 			problem "tile $kind: not made"
 	done

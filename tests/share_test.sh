@@ -59,7 +59,7 @@ shares()
 works '' gbuffer builtin:cornell --camera main --size 40x24 -o kept_g.exr
 printf '0,1,0,0,1,0\n0.5,1,0,0,1,0\n-0.5,0.5,0.2,0,1,0\n' >kept_points.csv
 shares '1 2 7 16' .glb volumes builtin:suburb --distance 1
-shares 2 .glb volumes builtin:heightfield:2000 --distance 1 --drop-hidden --compensate --trim 0.1 --verify --detail auto
+shares 2 .glb volumes builtin:heightfield:2000 --distance 1 --compensate --trim 0.1 --verify --detail auto
 shares '1 2 7' .glb bake builtin:suburb --radius 1 --rays 16
 shares 2 .glb bake builtin:cornell --radius 1 --rays 16 --fit points --color
 shares 2 .glb bake builtin:foliage --radius 0.5 --rays 2 --bent
@@ -121,7 +121,7 @@ continues()
 	same "../plain_$file" "$file" "$file: other bytes than without a cache"
 	there "$file"
 }
-continues v.glb volumes builtin:cave:6000 --distance 2 --trim 0.15 --detail auto --compensate --drop-hidden
+continues v.glb volumes builtin:cave:6000 --distance 2 --trim 0.15 --detail auto --compensate
 continues b.glb bake builtin:courtyard --radius 1 --rays 64
 "$nook" gbuffer builtin:suburb --camera auto:1 --size 320x180 -o kept_h.exr
 continues r.exr reference builtin:suburb --gbuffer kept_h.exr --radius 1 --rays 1024
@@ -144,7 +144,7 @@ there a.exr
 
 # Results that are damaged are made again, in one line; those of other inputs are not seen.
 "$nook" level builtin:cornell -o kept_level.glb >../stdout
-what='volumes kept_level.glb --distance 0.3 --drop-hidden'
+what='volumes kept_level.glb --distance 0.3'
 rm -rf kept_cache
 cached $what -o kept_first.glb
 for change in 'head -c 40' 'tr \000 \001' 'head -c 0'; do

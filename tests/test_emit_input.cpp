@@ -183,7 +183,7 @@ TEST_CASE("tile input: what is wrong is named", "[emit]")
 {
 	TileRecipe recipe;
 	recipe.size = 2;
-	recipe.kind = TileKind::transform;
+	recipe.kind = TileKind::random;
 	TileQuality quality;
 	quality.window = 0.0;
 	const std::string ours = tileJson(scatteredTile(Domain::disk, 2, 2, true), &recipe, quality, contextOf("nook tile"));
@@ -198,7 +198,7 @@ TEST_CASE("tile input: what is wrong is named", "[emit]")
 		{replaced(ours, "[1.0, 0.0, 1.0, 1.0]", "[1.0, 1.0, 1.0, 1.0]"), "transforms[0]: found an array of 4, expected the cosine"},
 		{replaced(ours, "[1.0, 0.0, 1.0, 1.0]", "[1.0, 0.0, 1.0]"), "transforms[0]: found an array of 3"},
 		{replaced(ours, "\"window\": 0.0", "\"window\": true"), "quality.window: found true"},
-		{replaced(ours, "\"kind\": \"transform\"", "\"kind\": \"none\""), "recipe.kind: found \"none\""},
+		{replaced(ours, "\"kind\": \"random\"", "\"kind\": \"none\""), "recipe.kind: found \"none\""},
 	};
 	for (const Wrong& wrong : table)
 	{

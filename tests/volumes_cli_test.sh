@@ -93,17 +93,6 @@ done
 same s1.glb s3.glb "threads: different bytes of the suburb"
 same s1.json s3.json "threads: different figures of the suburb"
 rm s1.glb s3.glb s1.json s3.json
-for threads in 1 3; do
-	works '' volumes builtin:suburb --distance 1 --drop-hidden --threads $threads -o h$threads.glb --json h$threads.json
-done
-grep -q '"dropped_hidden": [1-9]' h1.json || problem "--drop-hidden: found nothing dropped, expected some of the suburb"
-# With a bound of 0, sides are restored until no sampled point loses anything.
-works '"hidden_lost": 0' volumes builtin:cornell --distance 0.3 --drop-hidden --hidden-loss 0 --strict --json -
-fails 1 '--hidden-loss: found without --drop-hidden' volumes builtin:cornell --distance 1 --hidden-loss 0.1 -o v.glb
-fails 1 "--hidden-loss: found '1', expected a share above 0, below 1" volumes builtin:cornell --distance 1 --drop-hidden --hidden-loss 1 -o v.glb
-same h1.glb h3.glb "threads: different bytes of what is hidden"
-same h1.json h3.json "threads: different figures of what is hidden"
-rm h1.glb h3.glb h1.json h3.json
 works '"quantisation_error_m": 0' volumes kept.obj --distance 1 --no-drop --json -
 
 # Bad input.

@@ -248,7 +248,7 @@ WorkFacts factsOf(const ParsedCommand& parsed, const std::string& folder, const 
 		return std::any_of(options.begin(), options.end(),
 						   [&parsed](const char* option) { return !parsed.values(option).empty(); });
 	};
-	facts.looks_on = given({"--trim", "--compensate", "--drop-hidden", "--detail"});
+	facts.looks_on = given({"--trim", "--compensate", "--detail"});
 	if (parsed.name == "bake")
 	{
 		const double across = parsed.number("--texture").value_or(0.0);

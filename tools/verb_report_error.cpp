@@ -74,10 +74,6 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 		 {"--pictures", takesWhole(settings.pictures, 0, 64), "Pictures of each view, beside the reference (default 8)"},
 		 {"--shifts", takesWhole(settings.shifts, 0, 64),
 		  "Parts of a pixel by which views are moved to see what flickers (default 4, at least 2; 0: not measured)"},
-		 {"--frames", takesWhole(settings.frames, 2, kMostFrames),
-		  "Frames of a camera that stands, pans and walks, behind a mean over frames (default: none)"},
-		 {"--ema", takesNumber(settings.ema, 1e-6, 1.0), "With --frames: weight of the newest frame in the mean (default 0.1)",
-		  needs("--frames")},
 		 {"--baseline", takesText(options.baseline, "FILE.json"),
 		  "An earlier report: exit code 7 where an error has grown (times do not count)"}});
 	addRun(app, options.outputs, true);

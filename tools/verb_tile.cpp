@@ -40,8 +40,7 @@ void declare(CLI::App& app, TileOptions& options)
 		 {"--size", takesWhole(recipe.size, 2, kMaxTileSize), "Width of the window in pixels; above 8 with --filter alone",
 		  kRequired},
 		 {"--kind", takesChoice(namesOf<TileKind>(), recipe.kind),
-		  "Points of their own for every variant (default), the base pattern turned and scaled, turned by even steps, or reflected "
-		  "at random"},
+		  "Points of their own for every variant (default), or the base pattern turned by even steps, or reflected at random"},
 		 filterRow(options.filters,
 				   "Makes the tile for what is seen behind a filter, in place of the window's mean: none, box:N, binomial:N, "
 				   "gauss:SIGMA, bilateral:N or file:KERNEL.json; with @SHARE how much it counts; may be repeated"),
@@ -53,8 +52,8 @@ void declare(CLI::App& app, TileOptions& options)
 		 {"--progressive", takesFlag(recipe.progressive),
 		  "--kind points: each variant's samples in the order whose prefixes err least, for --bands and --counts"},
 		 {"--lambda", takesNumber(recipe.lambda, 1e-6, 1e6),
-		  "Weight of the variants' own error against that of the window (default: by kind)"},
-		 {"--starts", takesWhole(recipe.starts, 1, 1000), "Independent starts, the best is kept (default: by kind)"},
+		  "Weight of the variants' own error against that of the window (default: by filters and frames)"},
+		 {"--starts", takesWhole(recipe.starts, 1, 1000), "Independent starts, the best is kept (default: by domain and size)"},
 		 seedRow(recipe.seed),
 		 {"--memory", takesBytes(options.memory_bytes), "Refuses, before work starts, a tile that may take more (default 4GiB)"},
 		 {"--name", takesText(options.name, "IDENT"), "Stem of the identifiers in source files (default: from the pattern)"}});

@@ -70,18 +70,16 @@ void declare(CLI::App& app, TuneOptions& options)
 				{"--radius", takesNumber(settings.radius_m, 1e-6, 1e9, "M"),
 				 "Reach of occlusion in metres, with linear falloff (default: by each level's size, 1.5 m at most)"}});
 	addPictureSize(app, options.size);
-	addOptions(
-		app,
-		{{"--views", takesWhole(settings.views, 1, 64), "Views of each level, the most informative ones (default 4)"},
-		 {"--rays", takesWhole(settings.reference_rays, 1, 1 << 20), "Rays a pixel of the reference (default 256)"},
-		 {"--repetitions", takesWhole(settings.repetitions, 1, 1000), "Drawings of what gets to the end (default 7)"},
-		 glDeviceRow(settings.gl_device),
-		 {"--glsl", takesChoice(glslTargets(), options.emit.target),
-		  "Language of the shader: OpenGL 3.3 (default), OpenGL 4.3, OpenGL ES 3.0, or Vulkan; volumes are in the first two",
-		  with_files},
-		 {"--depth", takesChoice(kModuleDepths, options.emit.device_depth),
-		  "What the shader reads: depth along the view direction (default), or what a depth buffer holds", with_files},
-		 {"--check-grid", takesFlag(settings.check_grid), "Measures everything in full as well, and says how the search did"}});
+	addOptions(app,
+			   {{"--views", takesWhole(settings.views, 1, 64), "Views of each level, the most informative ones (default 4)"},
+				{"--rays", takesWhole(settings.reference_rays, 1, 1 << 20), "Rays a pixel of the reference (default 256)"},
+				{"--repetitions", takesWhole(settings.repetitions, 1, 1000), "Drawings of what gets to the end (default 7)"},
+				glDeviceRow(settings.gl_device),
+				{"--glsl", takesChoice(glslTargets(), options.emit.target),
+				 "Language of the shader: OpenGL 3.3 (default), OpenGL 4.3, OpenGL ES 3.0, or Vulkan; volumes are in the first two",
+				 with_files},
+				{"--depth", takesChoice(kModuleDepths, options.emit.device_depth),
+				 "What the shader reads: depth along the view direction (default), or what a depth buffer holds", with_files}});
 	addCache(app);
 	addLoadOptions(app, options.load);
 	addOptions(app, {{"-o,--output", takesText(options.folder, "FOLDER"),

@@ -95,12 +95,6 @@ double flatOf(const std::string& option, const std::string& text)
 	return flat;
 }
 
-// "0" or a share below 1.
-double lossOf(const std::string& option, const std::string& text)
-{
-	return text == "0" ? 0.0 : shareOfText(option, text, false);
-}
-
 std::vector<OptionRow> occluderRows(OccluderSettings& occluders, VolumeSettings& settings)
 {
 	const auto take_extent = [&occluders](const std::string& name, const std::string& text)
@@ -134,19 +128,12 @@ std::vector<OptionRow> dropRows(DropSettings& drop, bool& no_drop)
 {
 	return {
 		{"--no-drop", takesFlag(no_drop), "All volumes: the three --keep options in one",
-		 excludes("--drop-below or --drop-hidden or --flat-normals or --visible-from")},
+		 excludes("--drop-below or --flat-normals or --visible-from")},
 		{"--keep-unlit", takesFlag(drop.no_receiver, false),
 		 "Also volumes that darken nothing: no surface within them sees their polygon",
 		 excludes("--visible-from or --flat-normals")},
 		{"--keep-sides", takesFlag(drop.sides, false), "Also the sides of two-sided polygons that darken nothing"},
 		{"--keep-inside", takesFlag(drop.inside, false), "Also what lies inside solids, where no camera comes"},
-		{"--drop-hidden", takesFlag(drop.hidden),
-		 "Drops sides that see none of the surfaces that they darken, which are behind something opaque (sampled; minutes for some "
-		 "200,000 polygons)"},
-		{"--hidden-loss", takesParsed("SHARE", drop.hidden_bound, lossOf),
-		 "Of occlusion: what a sampled point may lose by --drop-hidden before there is a warning, and with --strict exit code 7 "
-		 "(default: 1/64)",
-		 needs("--drop-hidden")},
 		{"--flat-normals", takesFlag(drop.smooth_normals, false),
 		 "For renderers that shade with the triangles' normals: what would darken nothing but surfaces whose normals are "
 		 "interpolated between vertices is dropped, too"},
@@ -250,7 +237,7 @@ private:
 void checkShared(const VolumeSettings& settings)
 {
 	const DropSettings& drop = settings.drop;
-	if (!drop.no_receiver && !drop.sides && !drop.inside && !drop.hidden && drop.below <= 0.0 && !settings.compensate)
+	if (!drop.no_receiver && !drop.sides && !drop.inside && drop.below <= 0.0 && !settings.compensate)
 	{
 		refuse("--share: found with --no-drop and without --compensate, which leave nothing to share out, "
 			   "expected one run");
@@ -317,10 +304,6 @@ void run(VolumeOptions& options, VerbProgress& progress)
 	for (const std::string& warning : built.warnings)
 	{
 		warn(warning);
-	}
-	if (built.dropped.hidden_lost && options.level.load.strict)
-	{
-		throw Error(ExitCode::difference, loaded.level.name + ": drop-hidden: found a loss above what was asked, expected none");
 	}
 }
 

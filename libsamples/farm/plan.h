@@ -136,7 +136,7 @@ struct WorkFacts
 	double triangles = 0.0;
 	double pixels = 0.0;   // or points
 	double rays = 0.0;     // of a pixel
-	bool looks_on = false; // volumes that are trimmed, compensated, simplified or dropped by sight
+	bool looks_on = false; // volumes that are trimmed, compensated or simplified
 	bool open_end = false; // nobody knows how much
 };
 

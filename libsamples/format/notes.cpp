@@ -140,7 +140,6 @@ std::string shortName(Domain domain, std::size_t count, const Recipe* recipe)
 	part(recipe->method != plain.method, nameOf(recipe->method));
 	part(recipe->minimise != plain.minimise, nameOf(recipe->minimise));
 	part(recipe->weights != plain.weights, std::string(nameOf(recipe->weights)) + "_weights");
-	part(recipe->voronoi != plain.voronoi, nameOf(recipe->voronoi));
 	part(recipe->order != plain.order, nameOf(recipe->order));
 	return name;
 }

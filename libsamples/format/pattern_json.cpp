@@ -34,9 +34,9 @@ std::string recipeJson(const Recipe& recipe)
 	return "{\n\t\t\"domain\": " + name(recipe.domain) + ",\n\t\t\"count\": " + std::to_string(recipe.count) +
 		   ",\n\t\t\"centre\": " + flag(recipe.centre) + ",\n\t\t\"symmetric\": " + flag(recipe.symmetric) +
 		   ",\n\t\t\"method\": " + name(recipe.method) + ",\n\t\t\"minimise\": " + name(recipe.minimise) +
-		   ",\n\t\t\"weights\": " + name(recipe.weights) + ",\n\t\t\"voronoi\": " + name(recipe.voronoi) +
-		   ",\n\t\t\"order\": " + name(recipe.order) + ",\n\t\t\"starts\": " + std::to_string(recipe.starts) +
-		   ",\n\t\t\"seed\": " + std::to_string(recipe.seed) + ",\n\t\t\"exponent\": " + doubleText(recipe.exponent) + "\n\t}";
+		   ",\n\t\t\"weights\": " + name(recipe.weights) + ",\n\t\t\"voronoi\": \"exact\",\n\t\t\"order\": " + name(recipe.order) +
+		   ",\n\t\t\"starts\": " + std::to_string(recipe.starts) + ",\n\t\t\"seed\": " + std::to_string(recipe.seed) +
+		   ",\n\t\t\"exponent\": " + doubleText(recipe.exponent) + "\n\t}";
 }
 
 Recipe readRecipe(const JsonValue& object, const Pattern& pattern)
@@ -51,7 +51,10 @@ Recipe readRecipe(const JsonValue& object, const Pattern& pattern)
 	recipe.method = enumOf<Method>(object.at("method"));
 	recipe.minimise = enumOf<Minimise>(object.at("minimise"));
 	recipe.weights = enumOf<WeightRule>(object.at("weights"));
-	recipe.voronoi = enumOf<VoronoiMode>(object.at("voronoi"));
+	if (object.at("voronoi").string() != "exact")
+	{
+		object.at("voronoi").expected("\"exact\""); // earlier versions also had cells of a grid
+	}
 	recipe.order = enumOf<Order>(object.at("order"));
 	recipe.starts = static_cast<int>(object.at("starts").integer(0, 100000));
 	recipe.seed = static_cast<uint32_t>(object.at("seed").integer(0, UINT32_MAX));

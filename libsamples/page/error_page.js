@@ -217,41 +217,6 @@ function drawStability() {
 	publish();
 }
 
-// ---- Over frames
-
-const MOTIONS = { still: 'stands', pan: 'pans', walk: 'walks' };
-
-// A sparkline per row of the table over the displayed frames.
-function sparkline(parent, values, low, high, method) {
-	const w = 90, h = 26, x = i => 4 + (w - 8) * (values.length > 1 ? i / (values.length - 1) : 0.5);
-	const y = v => 3 + (h - 6) * (high > low ? (high - v) / (high - low) : 0.5);
-	const svg = make(parent, 'svg', { class: 'spark', viewBox: `0 0 ${w} ${h}`, width: w, height: h, role: 'img', 'aria-label': values.map(shortNumber).join(', ') });
-	make(svg, 'path', { d: values.map((v, i) => `${i ? 'L' : 'M'}${x(i)},${y(v)}`).join(''), fill: 'none', stroke: `var(--${method})`, 'stroke-width': 2 });
-	for (const [i, v] of values.entries()) make(svg, 'circle', { cx: x(i), cy: y(v), r: 2.5, fill: `var(--${method})` });
-}
-
-function drawFrames() {
-	const place = views[state.view], asked = views.some(p => p.of.some(v => v && v.frames)), holder = byId('frames-table');
-	byId('frames').hidden = byId('frames-link').hidden = !asked;
-	holder.replaceChildren();
-	place.of.forEach((view, r) => {
-		if (!view || !view.frames) return;
-		const part = view.frames, all = part.rows.flatMap(row => row.rmse);
-		byId('frames-text').textContent = `RMSE against rays of a mean over frames, ${shortNumber(part.ema)} of each new one, read where the surface was in the frame before. `
-			+ `The camera stands, pans by a pixel and a half a frame, or walks by a 25th of the radius to its right. A method takes the same samples in every frame, or a tile’s of several frames (nook tile --frames). `
-			+ `Change: by how much a surface still changes with the last frame. Uncovered: where the mean is at most two frames old.`;
-		if (reports.length > 1) make(holder, 'h3', {}, rendererName(reports[r]));
-		const methodOf = name => view.points.find(p => p.name === name).method;
-		const rows = part.rows.map(row => ({ class: row.tile ? 'front' : '', cells: [
-			{ text: MOTIONS[row.motion], class: 'text' }, { text: row.candidate, class: 'name', colour: methodOf(row.candidate) }, { text: row.tile ? 'a tile over frames' : 'the same', class: 'text' },
-			...row.rmse.map(number), number(row.change), row.uncovered === null ? '–' : number(row.uncovered), { text: '', class: 'spark', draw: td => sparkline(td, row.rmse, Math.min(...all), Math.max(...all), methodOf(row.candidate)) }] }));
-		sortedTable(holder, [{ text: 'camera', class: 'text' }, { text: 'candidate', class: 'text' }, { text: 'samples', class: 'text' },
-			...part.shown.map(f => `frame ${f}`), 'change', 'uncovered', { text: 'course', class: 'text' }], rows, true);
-		drawn.frames = part.rows.length;
-	});
-	publish();
-}
-
 // ---- Pictures
 
 function drawPictures() {
@@ -275,7 +240,6 @@ function drawView() {
 	drawCharts();
 	drawTable();
 	drawStability();
-	drawFrames();
 	drawPictures();
 }
 

@@ -65,7 +65,6 @@ function addRow(body, row) {
 	for (const cell of row.cells) {
 		const td = make(tr, 'td', cell && cell.class ? { class: cell.class } : {}, cell && cell.text !== undefined ? cell.text : cell);
 		if (cell && cell.colour) td.prepend(swatch(cell.colour));
-		if (cell && cell.draw) cell.draw(td);
 	}
 	if (row.click) { tr.style.cursor = 'pointer'; tr.addEventListener('click', row.click); }
 }

@@ -6,7 +6,7 @@ Object.assign(drawn, { fronts: 0, rows: 0 });
 const METRIC = { name: data.measure, of: p => p.error };
 const GOAL = { ms: data.goal.budget_ms, error: data.goal.max_error };
 const onAllViews = p => p.rung >= data.rungs.length - 2 && p.views.length > 0;
-const points = (data.grid ? data.grid.candidates : data.candidates).filter(p => !p.failed && p.views.length > 0).map(p => ({ name: p.candidate,
+const points = data.candidates.filter(p => !p.failed && p.views.length > 0).map(p => ({ name: p.candidate,
 	method: p.method, origin: onAllViews(p) ? 'ours' : 'coarse', time: { ms: p.time_ms }, error: p.error, bytes: p.bytes }));
 const taken = data.pick ?? data.nearest; // null: nothing could be drawn
 let chosen = taken?.candidate;
@@ -78,7 +78,7 @@ function drawText() {
 	drawMade(byId('made'), data, data.renderer);
 	for (const line of failures) make(byId('failures'), 'div', { class: 'failure' }, line);
 	byId('confidence').textContent = data.confidence;
-	for (const line of [`${search}.`, ...(data.grid ? [data.grid.text] : [])]) make(byId('search'), 'p', {}, line);
+	make(byId('search'), 'p', {}, `${search}.`);
 }
 
 function drawEmitted() {

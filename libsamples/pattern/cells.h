@@ -36,10 +36,6 @@ struct Cells
 // |x − p_i|² − powers_i is least; on the sphere, where e^{powers_i} x·p_i is greatest.
 Cells exactCells(Domain domain, std::span<const glm::dvec3> points, std::span<const double> powers = {});
 
-// The paper's discrete cells (VO §4.5): 512² squares of the disk, 128³ cubes of the ball, or 512² equal-area pieces for directions.
-// Integrals and centroids only. Error of an integral: about the measure of one layer of grid cells along its border.
-Cells discreteCells(Domain domain, std::span<const glm::dvec3> points);
-
 // Adds the derivative of Σ_i gradient_i · integral_i by every point of a Voronoi diagram (no powers), given its facets. For
 // directions the result must still be projected to the sphere's tangent plane.
 void addCellGradient(Domain domain, std::span<const glm::dvec3> points, std::span<const Facet> facets,

@@ -155,9 +155,6 @@ inline Seen counted(const RunSettings& run, StartProgress& start_progress, const
 	};
 }
 
-// Voronoi cells, exact or on the paper's grid.
-Cells voronoiCells(Domain domain, VoronoiMode mode, std::span<const glm::dvec3> points);
-
 // Weights of fixed points by the recipe's rule; opposite points get equal weights; sum 1.
 std::vector<double> weightsFor(const Recipe& recipe, const Layout& layout, std::span<const glm::dvec3> points);
 

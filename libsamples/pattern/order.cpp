@@ -326,8 +326,7 @@ Pattern slicePattern(int count)
 	return pattern;
 }
 
-// This work is based on: T. Gonzalez, "Clustering to minimize the maximum intercluster distance", 1985 (farthest-first order), and
-// G. Croes, "A method for solving traveling-salesman problems", 1958 (2-opt).
+// This work is based on: T. Gonzalez, "Clustering to minimize the maximum intercluster distance", 1985 (farthest-first order).
 
 namespace
 {
@@ -390,49 +389,6 @@ std::vector<std::size_t> farthestFirst(const Layout& layout, const Points& free)
 	return order;
 }
 
-// A short path through all points: nearest neighbour, then 2-opt until it no longer shortens.
-std::vector<std::size_t> shortPath(const Layout& layout, const Points& free)
-{
-	const Distances distance(layout, free);
-	std::vector<std::size_t> path;
-	std::vector<char> taken(free.size(), 0);
-	std::size_t next = 0;
-	while (path.size() < free.size())
-	{
-		path.push_back(next);
-		taken[next] = 1;
-		double least = 1e300;
-		for (std::size_t i = 0; i < free.size(); ++i)
-		{
-			const double d = taken[i] != 0 ? 1e300 : distance(i, path.back());
-			if (d < least)
-			{
-				least = d;
-				next = i;
-			}
-		}
-	}
-	bool shorter = true;
-	for (int pass = 0; shorter && pass < 20; ++pass)
-	{
-		shorter = false;
-		for (std::size_t i = 1; i < path.size(); ++i)
-		{
-			for (std::size_t j = i + 1; j < path.size(); ++j)
-			{
-				const double before = distance(path[i - 1], path[i]) + (j + 1 < path.size() ? distance(path[j], path[j + 1]) : 0.0);
-				const double after = distance(path[i - 1], path[j]) + (j + 1 < path.size() ? distance(path[i], path[j + 1]) : 0.0);
-				if (after < before - 1e-12)
-				{
-					std::reverse(path.begin() + static_cast<std::ptrdiff_t>(i), path.begin() + static_cast<std::ptrdiff_t>(j) + 1);
-					shorter = true;
-				}
-			}
-		}
-	}
-	return path;
-}
-
 } // namespace
 
 Points reorder(Order order, const Layout& layout, const Points& points)
@@ -442,9 +398,8 @@ Points reorder(Order order, const Layout& layout, const Points& points)
 		return points;
 	}
 	const Points free = layout.freePoints(points);
-	const std::vector<std::size_t> indices = order == Order::progressive ? farthestFirst(layout, free) : shortPath(layout, free);
 	Points sorted;
-	for (const std::size_t i : indices)
+	for (const std::size_t i : farthestFirst(layout, free))
 	{
 		sorted.push_back(free[i]);
 	}

@@ -39,15 +39,9 @@ template <> std::span<const std::string_view> namesOf<WeightRule>()
 	return names;
 }
 
-template <> std::span<const std::string_view> namesOf<VoronoiMode>()
-{
-	static constexpr std::array<std::string_view, 2> names{"exact", "discrete"};
-	return names;
-}
-
 template <> std::span<const std::string_view> namesOf<Order>()
 {
-	static constexpr std::array<std::string_view, 3> names{"none", "progressive", "cache"};
+	static constexpr std::array<std::string_view, 2> names{"none", "progressive"};
 	return names;
 }
 
@@ -108,13 +102,6 @@ void checkRecipe(const Recipe& recipe)
 			 "minimise window: rotations of a set of directions leave no error on the sphere; expected another domain");
 	refuseIf(recipe.minimise == Minimise::noise && sphere,
 			 "minimise noise: on the sphere the noise is all of the error; expected rms");
-	refuseIf(
-		recipe.voronoi == VoronoiMode::discrete && (recipe.method == Method::equal || recipe.method == Method::refine),
-		"voronoi discrete: the methods refine and equal need exact cells; expected the method electro, lloyd or one without cells");
-	const bool cells_used =
-		recipe.weights == WeightRule::voronoi || recipe.method == Method::lloyd || (recipe.method == Method::electro && !sphere);
-	refuseIf(recipe.voronoi == VoronoiMode::discrete && !cells_used,
-			 "voronoi discrete: these options use no cells; expected weights voronoi");
 	refuseIf(recipe.method == Method::equal && recipe.weights == WeightRule::fitted,
 			 "weights fitted: the method equal makes cells for equal weights; expected voronoi or equal");
 	refuseIf(recipe.exponent != 0.0 && !(sphere && recipe.method == Method::electro),
@@ -175,10 +162,6 @@ std::string patternCommand(const Recipe& recipe)
 	if (recipe.weights != plain.weights)
 	{
 		option("--weights", std::string(nameOf(recipe.weights)));
-	}
-	if (recipe.voronoi != plain.voronoi)
-	{
-		option("--voronoi", std::string(nameOf(recipe.voronoi)));
 	}
 	if (recipe.order != plain.order)
 	{

@@ -43,17 +43,10 @@ enum class WeightRule
 	fitted,  // non-negative least squares on the half-space ensemble
 };
 
-enum class VoronoiMode
-{
-	exact,
-	discrete, // the paper's grids
-};
-
 enum class Order
 {
 	none,        // as the generator leaves them
 	progressive, // every prefix covers the domain as well as possible
-	cache,       // points adjacent in the list are close in the domain
 };
 
 inline constexpr int kMaxCount = 4096;
@@ -67,7 +60,6 @@ struct Recipe
 	Method method = Method::refine;
 	Minimise minimise = Minimise::rms;
 	WeightRule weights = WeightRule::voronoi;
-	VoronoiMode voronoi = VoronoiMode::exact;
 	Order order = Order::none;
 	int starts = 0;        // independent starting sets, 1 to 100000; 0: defaultStarts
 	uint32_t seed = 1;     // same seed, same bytes
@@ -113,7 +105,6 @@ std::span<const std::string_view> patternDomains();
 template <> std::span<const std::string_view> namesOf<Method>();
 template <> std::span<const std::string_view> namesOf<Minimise>();
 template <> std::span<const std::string_view> namesOf<WeightRule>();
-template <> std::span<const std::string_view> namesOf<VoronoiMode>();
 template <> std::span<const std::string_view> namesOf<Order>();
 
 // Called with a start's number and its current points while they move; several starts run in parallel if there are several threads.

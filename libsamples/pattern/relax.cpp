@@ -68,7 +68,7 @@ public:
 	void take(Points points)
 	{
 		m_points = std::move(points);
-		m_cells = voronoiCells(m_recipe.domain, m_recipe.voronoi, m_points);
+		m_cells = exactCells(m_recipe.domain, m_points);
 		m_error = relativeSpread(m_cells.integrals);
 	}
 
@@ -190,7 +190,7 @@ void relaxLloyd(const Recipe& recipe, const Layout& layout, Points& points, cons
 {
 	for (int round = 0; round < max_rounds; ++round)
 	{
-		const Points target = centroidsOf(layout, voronoiCells(recipe.domain, recipe.voronoi, points));
+		const Points target = centroidsOf(layout, exactCells(recipe.domain, points));
 		const double move = greatestMove(points, target);
 		points = target;
 		if (seen)
@@ -279,7 +279,7 @@ Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings
 					{
 						// The paper's objective: equal integrals.
 						relaxElectro(recipe, layout, points, seen);
-						values[k] = relativeSpread(voronoiCells(recipe.domain, recipe.voronoi, points).integrals);
+						values[k] = relativeSpread(exactCells(recipe.domain, points).integrals);
 					}
 					else
 					{

@@ -21,7 +21,7 @@ namespace nook
 
 template <> std::span<const std::string_view> namesOf<TileKind>()
 {
-	static constexpr std::array<std::string_view, 4> names{"points", "transform", "even", "random"};
+	static constexpr std::array<std::string_view, 3> names{"points", "even", "random"};
 	return names;
 }
 
@@ -29,10 +29,9 @@ namespace
 {
 
 constexpr double kPointsLambda = 0.05;
-constexpr double kFilterLambda = 0.12;    // with less, single variants exceed 1.25 times the base's error behind a binomial filter
-constexpr double kFramesLambda = 1.0;     // with less, single variants exceed 1.25 times the base's error
-constexpr double kTransformLambda = 0.15; // with less, the scales spread so far that single variants suffer
-constexpr double kPrefix = 0.3;           // weight of the means of 2, 4, 8, … frames relative to that of all
+constexpr double kFilterLambda = 0.12; // with less, single variants exceed 1.25 times the base's error behind a binomial filter
+constexpr double kFramesLambda = 1.0;  // with less, single variants exceed 1.25 times the base's error
+constexpr double kPrefix = 0.3;        // weight of the means of 2, 4, 8, … frames relative to that of all
 constexpr int kPannedSize = 8; // panning brings distant pixels together; in a large tile that involves every pair of variants
 
 std::string tileCommandOn(const TileRecipe& recipe, const std::string& base)
@@ -73,10 +72,6 @@ double lambdaOf(const TileRecipe& recipe)
 	if (recipe.lambda > 0.0)
 	{
 		return recipe.lambda;
-	}
-	if (recipe.kind != TileKind::points)
-	{
-		return kTransformLambda;
 	}
 	return recipe.filters.empty() ? kPointsLambda : recipe.frames > 1 ? kFramesLambda : kFilterLambda;
 }
@@ -278,10 +273,9 @@ void checkTileRecipe(const TileRecipe& recipe, Domain domain)
 	{
 		throw Error(ExitCode::usage, "lambda: expected a number above 0, at most 1e6");
 	}
-	const bool descends = recipe.kind == TileKind::points || recipe.kind == TileKind::transform;
-	if (!descends && (recipe.lambda != -1.0 || recipe.starts != 0))
+	if (recipe.kind != TileKind::points && (recipe.lambda != -1.0 || recipe.starts != 0))
 	{
-		throw Error(ExitCode::usage, "lambda starts: the kinds even and random are not optimised; expected points or transform");
+		throw Error(ExitCode::usage, "lambda starts: the kinds even and random are not optimised; expected points");
 	}
 	if (domain == Domain::sphere)
 	{
@@ -293,11 +287,10 @@ void checkTileRecipe(const TileRecipe& recipe, Domain domain)
 		throw Error(ExitCode::unsupported, "kind " + std::string(nameOf(recipe.kind)) +
 											   ": slices have azimuths and jitters of their own; expected points");
 	}
-	if (domain == Domain::ball && (recipe.kind == TileKind::transform || recipe.kind == TileKind::even))
+	if (domain == Domain::ball && recipe.kind == TileKind::even)
 	{
 		throw Error(ExitCode::unsupported,
-					"kind " + std::string(nameOf(recipe.kind)) +
-						": rotations about the view axis are for disk and hemisphere; expected points or random");
+					"kind even: rotations about the view axis are for disk and hemisphere; expected points or random");
 	}
 }
 
@@ -336,16 +329,11 @@ PatternTile repeated(const PatternTile& small, int size)
 	PatternTile tile = small;
 	tile.size = size;
 	tile.variants.clear();
-	tile.transforms.clear();
 	for (int v = 0; v < size * size * layersOf(small); ++v)
 	{
 		const int layer = v / (size * size);
 		const int from = (layer * small.size + v / size % size % small.size) * small.size + v % size % small.size;
 		tile.variants.push_back(small.variants[static_cast<std::size_t>(from)]);
-		if (!small.transforms.empty())
-		{
-			tile.transforms.push_back(small.transforms[static_cast<std::size_t>(from)]);
-		}
 	}
 	return tile;
 }
@@ -389,9 +377,8 @@ std::optional<PatternTile> bestCopies(const std::vector<PatternTile>& smaller, c
 // are skipped: a 6 × 6 tile of 16 samples over 8 frames takes eight times as long as the 12 × 12 tile that copies it.
 std::vector<int> sizesOf(const TileRecipe& recipe)
 {
-	const bool descends = recipe.kind == TileKind::points || recipe.kind == TileKind::transform;
 	std::vector<int> sizes;
-	for (int size = 2; descends && size < recipe.size; ++size)
+	for (int size = 2; recipe.kind == TileKind::points && size < recipe.size; ++size)
 	{
 		if (recipe.size % size == 0 && (size <= kLargestAlone || recipe.frames == 1) &&
 			(!recipe.moves || recipe.frames <= size * size))
@@ -409,7 +396,7 @@ PatternTile descendedTile(const Pattern& base, const TileRecipe& recipe, const s
 {
 	const std::span<const Pattern> near =
 		copies && recipe.size > kLargestAlone ? std::span<const Pattern>(copies->variants) : std::span<const Pattern>{};
-	PatternTile tile = recipe.kind == TileKind::points ? pointsTile(base, recipe, near, run) : transformedTile(base, recipe, run);
+	PatternTile tile = recipe.kind == TileKind::points ? pointsTile(base, recipe, near, run) : transformedTile(base, recipe);
 	tile.domain = base.domain;
 	tile.size = recipe.size;
 	tile.frames = recipe.frames;

@@ -14,10 +14,9 @@ namespace nook
 
 enum class TileKind
 {
-	points,    // every variant has its own points and weights
-	transform, // every variant is the base pattern rotated or reflected, and scaled
-	even,      // the base pattern rotated by even steps (the comparison in FORMULAS, "Windows")
-	random,    // the base pattern reflected about random directions: the paper's texture
+	points, // every variant has its own points and weights
+	even,   // the base pattern rotated by even steps
+	random, // the base pattern reflected about random directions: the paper's texture
 };
 template <> std::span<const std::string_view> namesOf<TileKind>();
 
@@ -25,7 +24,7 @@ struct TileRecipe
 {
 	int size = 4; // 2 to 128; the window is size × size pixels
 	TileKind kind = TileKind::points;
-	double lambda = -1.0; // weight of the variants' own plane² relative to window², > 0; −1: the default of the kind
+	double lambda = -1.0; // weight of the variants' own plane² relative to window², > 0; −1: by filters and frames
 	int starts = 0;       // 1 to 1000; 0: the default
 	uint32_t seed = 1;
 	// Kind points only: optimise for these filters after a mean over frames; empty: for the window's mean.

@@ -28,7 +28,7 @@ struct VariantUnion
 double tileError(Domain domain, const VariantUnion& all, std::size_t variants, double lambda, EnergyGradient& gradient,
 				 int threads);
 
-// The recipe's λ, or the default of its kind.
+// The recipe's λ, or the default for its filters and frames.
 double lambdaOf(const TileRecipe& recipe);
 
 // Structure read from the points: variants keep the symmetry and the centre of their base.
@@ -69,8 +69,8 @@ std::unique_ptr<TileProblem> sliceProblem(const Pattern& base, const TileRecipe&
 // Variants with their own samples, not yet rounded. `near`: variants of a tile that the last start begins near, or none.
 PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, std::span<const Pattern> near, const RunSettings& run);
 
-// Variants that are rotated, reflected or scaled copies of the base.
-PatternTile transformedTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run);
+// Variants that are rotated or reflected copies of the base.
+PatternTile transformedTile(const Pattern& base, const TileRecipe& recipe);
 
 // Approximates a large tile's squared error behind a filter and a mean over frames in time linear in the samples, not in the pairs
 // of samples.

@@ -150,17 +150,12 @@ std::vector<double> fittedWeights(Domain domain, std::span<const glm::dvec3> poi
 	return {w.data(), w.data() + n};
 }
 
-Cells voronoiCells(Domain domain, VoronoiMode mode, std::span<const glm::dvec3> points)
-{
-	return mode == VoronoiMode::exact ? exactCells(domain, points) : discreteCells(domain, points);
-}
-
 std::vector<double> weightsFor(const Recipe& recipe, const Layout& layout, std::span<const glm::dvec3> points)
 {
 	std::vector<double> weights(points.size(), 1.0 / static_cast<double>(points.size()));
 	if (recipe.weights == WeightRule::voronoi && recipe.method != Method::equal)
 	{
-		weights = voronoiCells(recipe.domain, recipe.voronoi, points).integrals;
+		weights = exactCells(recipe.domain, points).integrals;
 	}
 	else if (recipe.weights == WeightRule::fitted)
 	{

@@ -2,7 +2,6 @@
 // Finds the best candidate at each budget of time, and errors that have grown since an earlier report.
 #include "core/decimal.h"
 #include "core/error.h"
-#include "methods/method_table.h"
 #include "study/error_points.h"
 #include "study/error_report.h"
 #include "study/front.h"
@@ -241,35 +240,6 @@ BaselineResult compareWithBaseline(const ErrorReport& report, const ErrorReport&
 	std::stable_sort(result.regressions.begin(), result.regressions.end(),
 					 [](const Regression& a, const Regression& b) { return a.now * b.before > b.now * a.before; });
 	return result;
-}
-
-std::vector<std::size_t> framesPoints(const std::vector<Candidate>& candidates, const ErrorView& view)
-{
-	std::map<std::string, std::size_t> best;
-	const auto before = [&](std::size_t a, std::size_t b)
-	{
-		const auto rank = [&](std::size_t i)
-		{
-			return std::tuple(candidates[i].shade.filter == ShadeFilter::none, candidates[i].shade.half_resolution,
-							  candidates[i].count, view.points[i].measured.errors.rmse);
-		};
-		return rank(a) < rank(b);
-	};
-	for (std::size_t i = 0; i < candidates.size(); ++i)
-	{
-		if (candidates[i].kind == CandidateKind::screen && hasNoise(*candidates[i].row()))
-		{
-			const auto [found, fresh] = best.emplace(candidates[i].method(), i);
-			found->second = !fresh && before(i, found->second) ? i : found->second;
-		}
-	}
-	std::vector<std::size_t> chosen;
-	for (const auto& [method, i] : best)
-	{
-		chosen.push_back(i);
-	}
-	std::sort(chosen.begin(), chosen.end());
-	return chosen;
 }
 
 std::set<std::size_t> chosenPoints(const ErrorView& view, std::size_t count)

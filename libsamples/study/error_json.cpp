@@ -53,51 +53,6 @@ ScreenLimit limitFrom(const JsonValue& value)
 	return {value.at("thickness").number(), value.at("strength").number(), value.at("power").number(), errorsFrom(value)};
 }
 
-Json framesJson(const FramesPart& part)
-{
-	Json json{{"frames", part.frames}, {"ema", part.ema}, {"shown", part.shown}, {"rows", Json::array()}};
-	for (const FramesRow& row : part.rows)
-	{
-		json["rows"].push_back({{"candidate", row.candidate},
-								{"tile", row.tile},
-								{"motion", nameOf(row.motion)},
-								{"rmse", row.rmse},
-								{"change", row.change},
-								{"uncovered", optionalJson(row.uncovered)}});
-	}
-	return json;
-}
-
-FramesPart framesFrom(const JsonValue& value)
-{
-	FramesPart part;
-	part.frames = static_cast<int>(value.at("frames").integer(2, kMostFrames));
-	part.ema = value.at("ema").number();
-	const JsonValue shown = value.at("shown");
-	for (std::size_t i = 0; i < shown.arraySize(); ++i)
-	{
-		part.shown.push_back(static_cast<int>(shown.at(i).integer(1, part.frames)));
-	}
-	const JsonValue rows = value.at("rows");
-	for (std::size_t i = 0; i < rows.arraySize(); ++i)
-	{
-		const JsonValue one = rows.at(i);
-		FramesRow row{one.at("candidate").string(), one.at("tile").boolean(),           enumOf<Motion>(one.at("motion")), {},
-					  one.at("change").number(),    optionalNumber(one.at("uncovered"))};
-		const JsonValue rmse = one.at("rmse");
-		if (rmse.arraySize() != part.shown.size())
-		{
-			rmse.expected("an array of " + std::to_string(part.shown.size()) + ", as many as shown");
-		}
-		for (std::size_t k = 0; k < rmse.arraySize(); ++k)
-		{
-			row.rmse.push_back(rmse.at(k).number());
-		}
-		part.rows.push_back(std::move(row));
-	}
-	return part;
-}
-
 Json viewJson(const ErrorView& view)
 {
 	Json json{{"camera", view.camera},
@@ -115,10 +70,6 @@ Json viewJson(const ErrorView& view)
 			  {"points", Json::array()},
 			  {"stopped", Json::array()},
 			  {"picture", pictureJson(view.picture)}};
-	if (view.frames)
-	{
-		json["frames"] = framesJson(*view.frames);
-	}
 	for (const ErrorPoint& point : view.points)
 	{
 		json["points"].push_back(pointJson(point));
@@ -223,10 +174,6 @@ ErrorView viewFrom(const JsonValue& value)
 	if (value.has("screen_space_limit") && !value.at("screen_space_limit").value->is_null())
 	{
 		view.limit = limitFrom(value.at("screen_space_limit"));
-	}
-	if (value.has("frames"))
-	{
-		view.frames = framesFrom(value.at("frames"));
 	}
 	if (value.has("stopped")) // not in reports of before
 	{

@@ -174,10 +174,6 @@ private:
 			return;
 		}
 		show(on, drawn, view);
-		if (m_settings.frames > 0)
-		{
-			view.frames = framesOf(bench, camera, how, on, drawn, view, m_settings, m_points, m_run);
-		}
 		if (!failed.empty())
 		{
 			level.failure += (level.failure.empty() ? "" : "; ") + camera.name + ": " + failed.front();

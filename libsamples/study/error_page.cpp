@@ -109,7 +109,6 @@ std::string errorReportCommand(const ErrorReportSettings& settings)
 	text += settings.measure.device == Device::cpu ? " --device cpu" : "";
 	text += settings.measure.gl_device ? " --gl-device " + std::to_string(*settings.measure.gl_device) : "";
 	text += settings.pictures != defaults.pictures ? " --pictures " + std::to_string(settings.pictures) : "";
-	text += settings.frames > 0 ? " --frames " + std::to_string(settings.frames) + " --ema " + numberText(settings.ema) : "";
 	text += settings.measure.slowest_s != kSlowestPicture_s ? " --slowest " + numberText(settings.measure.slowest_s) : "";
 	text += settings.shifts != defaults.shifts ? " --shifts " + std::to_string(settings.shifts) : "";
 	return text;

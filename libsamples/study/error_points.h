@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A report's candidates on a view → time, error, flicker; what the cache has is not measured again. Which of them are drawn behind
-// a mean over frames, and which are shown. For error_measure.cpp.
+// A report's candidates on a view → time, error, flicker, and which of them are shown; what the cache has is not measured again.
+// For error_measure.cpp.
 #pragma once
 
 #include "core/error.h"
@@ -36,14 +36,14 @@ struct ViewCost
 	int repetitions = 0;
 };
 
-// Estimates. The first candidate of each name has what is made once.
+// Estimates seconds. The first candidate of each name bears what is made once.
 class CandidateCosts
 {
 public:
 	// `made`: the names of views before; grows.
 	CandidateCosts(std::span<const Candidate> candidates, const ViewCost& view, std::set<std::string>& made);
 
-	// On one thread.
+	// Returns an estimate for one thread.
 	double seconds(std::size_t candidate) const
 	{
 		return m_seconds[candidate];
@@ -89,17 +89,13 @@ public:
 	// `most`: repetitions. Throws CacheFailure, TooSlow, or what measuring throws.
 	ErrorPoint point(ViewBench& on, const Candidate& candidate, int most = std::numeric_limits<int>::max());
 
-	// Whether it is moved: rays are not, nor what would take too long.
+	// Returns whether its flicker is measured: not for rays, nor for what would take too long.
 	bool mayFlicker(const ErrorPoint& point) const;
 	double flicker(ViewBench& on, const Candidate& candidate);
 
-	// A view's reference, from the store or traced.
+	// Returns a view's reference from the store, or traces it.
 	Reference reference(const std::string& hash, const std::function<Reference()>& trace);
 
-	const MeasureSettings& measure() const // with the session of what draws
-	{
-		return m_measure;
-	}
 	ViewCost costOf(const ViewBench& on, const LevelBench& bench) const;
 
 private:
@@ -112,22 +108,12 @@ private:
 	ErrorContext m_context;
 };
 
-// Returns one candidate of each screen-space method with samples: the one that takes fewest, with a filter where one has it.
-// `candidates`: those of the view's points.
-std::vector<std::size_t> framesPoints(const std::vector<Candidate>& candidates, const ErrorView& view);
-
-// At most `count` points: the front's, evenly spaced, and the best recipe of each method.
+// Returns at most `count` points: the front's, evenly spaced, and the best recipe of each method.
 std::set<std::size_t> chosenPoints(const ErrorView& view, std::size_t count);
 
-// All that chosenPoints() chooses from: the front, and the best recipe of each method. Of some of a view's points, with their own
-// front: whatever of them is chosen from all is among these.
+// Returns all that chosenPoints() chooses from: the front, and the best recipe of each method. With some of a view's points and
+// their own front, the result contains whatever of them is chosen from all points.
 std::set<std::size_t> likelyPoints(const ErrorView& view);
-
-// Measures the points that framesPoints() returns over frames, as they are and with a tile of frames where they take one.
-// `candidates`: those of the points; `how`: the view's size and rays.
-FramesPart framesOf(LevelBench& bench, const LevelCamera& camera, const ViewSettings& how, ViewBench& on,
-					const std::vector<Candidate>& candidates, const ErrorView& view, const ErrorReportSettings& settings,
-					const PointMeasurer& points, const RunSettings& run);
 
 // A view → about what one layer of depth can know of it.
 

@@ -4,84 +4,20 @@
 
 #include "core/progress.h"
 #include "pattern/recipe.h"
-#include "scene/gbuffer.h"
 #include "scene/load.h"
 #include "study/measure_view.h"
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace nook
 {
-
-// A camera that stands or moves, and the mean over frames that an engine keeps: α · new + (1 − α) · old, old being read where each
-// surface was in the frame before.
-
-enum class Motion
-{
-	still,
-	pan,  // turns to the right about its own upright axis
-	walk, // moves to its right
-};
-template <> std::span<const std::string_view> namesOf<Motion>();
-
-// Each frame.
-struct MotionStep
-{
-	double turn_px = 0.0; // pixels at the picture's centre
-	double side_m = 0.0;
-};
-
-// Pans by 1.5 pixels or walks by a 25th of the radius: neither is a whole number of pixels.
-MotionStep stepOf(Motion motion, double radius_m);
-
-// The camera of a frame, from 0.
-LevelCamera cameraOfFrame(const LevelCamera& first, const MotionStep& step, int frame, int width_px, int height_px);
-
-// Where a pixel's surface was in the frame before: up to four texels with weights of sum 1; those that lie off the pixel's plane
-// by more than a texel, or face elsewhere, are left out. None: it was hidden, or outside.
-struct HistoryTexels
-{
-	std::array<std::size_t, 4> texels{};
-	std::array<double, 4> weights{};
-	bool any = false;
-};
-
-// Both pictures have one size.
-std::vector<HistoryTexels> historyOf(const GBuffer& now, const GBuffer& before);
-
-// The running mean over one camera's pictures, in order.
-class FrameMean
-{
-public:
-	// ema: α, above 0, at most 1. The first 1/α frames of a pixel count alike.
-	explicit FrameMean(double ema);
-
-	// A frame, and where its surfaces were in the one before; of the first frame, or after a cut, nothing.
-	void add(std::vector<double> frame, std::span<const HistoryTexels> history);
-
-	const std::vector<double>& mean() const;
-	const std::vector<int>& ages() const; // frames in each pixel's mean
-
-	// rms by which the mean of a surface changed with the last frame, over pixels that have a history; 0 where none has.
-	double change() const;
-
-private:
-	double m_ema;
-	double m_change = 0.0;
-	std::vector<double> m_mean;
-	std::vector<int> m_ages;
-};
-
-inline constexpr int kMostFrames = 256;
 
 // Volumes that would take longer a picture are not drawn, if nothing else is asked for; and in a first look.
 inline constexpr double kSlowestPicture_s = 60.0;
@@ -103,8 +39,6 @@ struct ErrorReportSettings
 	MeasureSettings measure;
 	int pictures = 8;    // of each view, beside the reference; 0 to 64
 	int shifts = 4;      // parts of a pixel by which a view is moved, for stability; 0: not measured
-	int frames = 0;      // of a camera that stands, pans and walks, 2 to kMostFrames; 0: not measured
-	double ema = 0.1;    // weight of the newest frame in their mean, above 0, at most 1
 	std::string version; // of nook
 };
 
@@ -160,25 +94,6 @@ struct ScreenLimit
 	ViewErrors errors;
 };
 
-// A method over frames with one camera.
-struct FramesRow
-{
-	std::string candidate;
-	bool tile = false; // samples of a tile made for its filter and the mean over frames; else the same in every frame
-	Motion motion{};
-	std::vector<double> rmse;        // of the mean against rays, at each of FramesPart::shown
-	double change = 0.0;             // rms by which a surface's mean changes with the last frame: what flickers
-	std::optional<double> uncovered; // RMSE of the last frame where the mean is at most two frames old; none: nowhere
-};
-
-struct FramesPart
-{
-	int frames = 0;
-	double ema = 0.1;
-	std::vector<int> shown; // 1, 8, 32 as far as there are, and the last; from 1
-	std::vector<FramesRow> rows;
-};
-
 struct ErrorView
 {
 	std::string camera;
@@ -191,7 +106,6 @@ struct ErrorView
 	std::vector<StoppedPoint> stopped;
 	FrontShare share;
 	std::optional<ScreenLimit> limit; // none in reports of before
-	std::optional<FramesPart> frames; // where it was asked for
 	std::vector<uint8_t> picture;     // the reference
 };
 

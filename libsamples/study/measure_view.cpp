@@ -248,8 +248,7 @@ struct ViewBench::Data
 		return drawn(gbuffer, candidate, how, repetitions);
 	}
 
-	AovShaded drawn(const GBuffer& of, const Candidate& candidate, const MeasureSettings& how, int repetitions,
-					const ShadeSamples* given = nullptr) const
+	AovShaded drawn(const GBuffer& of, const Candidate& candidate, const MeasureSettings& how, int repetitions) const
 	{
 		const DrawSettings drawing = drawSettings(how, repetitions);
 		if (candidate.kind == CandidateKind::rays)
@@ -261,7 +260,7 @@ struct ViewBench::Data
 			return level.asset(candidate).draw(of, candidate, how.device == Device::gl, timed, drawing);
 		}
 		const ShadeSettings shade = shadeSettingsOf(candidate, level.radiusM());
-		const ShadeSamples& samples = given != nullptr ? *given : level.samples().samplesOf(candidate, shade, run);
+		const ShadeSamples& samples = level.samples().samplesOf(candidate, shade, run);
 		return {how.device == Device::gl ? shadeOnGl(of, samples, shade, drawing) : shadeOnCpu(of, samples, shade, timed, drawing),
 				{}};
 	}
@@ -365,9 +364,9 @@ double ViewBench::surfaceShare() const
 	return static_cast<double>(m_data->surfaces) / static_cast<double>(m_data->surface.size());
 }
 
-std::vector<float> ViewBench::draw(const Candidate& candidate, const MeasureSettings& settings, const ShadeSamples* samples)
+std::vector<float> ViewBench::draw(const Candidate& candidate, const MeasureSettings& settings)
 {
-	return m_data->drawn(m_data->gbuffer, candidate, settings, 0, samples).shaded.visibility;
+	return m_data->drawn(m_data->gbuffer, candidate, settings, 0).shaded.visibility;
 }
 
 ViewErrors ViewBench::errorsOf(const std::vector<float>& visibility) const

@@ -174,8 +174,8 @@ public:
 	// where the renderer cannot draw it; TooSlow where that would take longer than slowest_s.
 	Measurement measure(const Candidate& candidate, const MeasureSettings& settings);
 
-	// The picture alone, once; of a screen-space method with these samples in place of its own.
-	std::vector<float> draw(const Candidate& candidate, const MeasureSettings& settings, const ShadeSamples* samples = nullptr);
+	// The picture alone, once.
+	std::vector<float> draw(const Candidate& candidate, const MeasureSettings& settings);
 
 	// Errors of any picture of this size.
 	ViewErrors errorsOf(const std::vector<float>& visibility) const;

@@ -285,7 +285,7 @@ Json seriesJson(const NoiseReport& report, Domain domain, Variant variant, Metho
 	series["variant"] = nameOf(variant);
 	series["method"] = nameOf(method);
 	series["weights_rule"] = nameOf(WeightRule::voronoi);
-	series["voronoi"] = nameOf(VoronoiMode::exact);
+	series["voronoi"] = "exact";
 	series["counts"] = mapped(rows, [](const NoiseRow* row) { return row->recipe.count; });
 	series["starts"] = mapped(rows, [](const NoiseRow* row) { return row->recipe.starts; });
 	series["measures"] = measuresJson(rows);

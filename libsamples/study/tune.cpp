@@ -123,7 +123,7 @@ Trial TuneBench::measure(std::size_t index, const Fidelity& fidelity)
 	MeasureSettings how = m_how;
 	how.repetitions = fidelity.repetitions;
 	Trial trial;
-	// Not where the grid draws once as well: what it needs is to be told.
+	// Not where one drawing is all: a pick with a fitted shape is drawn again under its number.
 	const bool once = fidelity.scale == 1.0 && fidelity.repetitions == 1 && m_report.settings.repetitions > 1;
 	for (std::size_t i = 0; i < fidelity.views; ++i)
 	{
@@ -457,10 +457,6 @@ TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings
 	};
 	report.search = searchCandidates(report.candidates.size(), settings.goal, report.rungs, measure, run.progress);
 	fitPick(report, bench);
-	if (settings.check_grid)
-	{
-		report.grid = searchGrid(report.candidates.size(), settings.goal, report.rungs, measure, &report.search, run.progress);
-	}
 	if (report.search.pick && report.search.runner_up)
 	{
 		report.runner_up =

@@ -37,8 +37,7 @@ struct TuneSettings
 	int repetitions = 7;    // drawings of what gets to the end
 	uint64_t max_bytes = 0; // a candidate that needs more of a level is left out; 0: none is
 	std::optional<int> gl_device;
-	bool check_grid = false; // measures everything in full as well
-	std::string version;     // of nook, that they are known by
+	std::string version; // of nook, that they are known by
 };
 
 // The facts of one level, or why it failed.
@@ -63,12 +62,11 @@ struct TuneReport
 	std::vector<Candidate> candidates;
 	TuneSearchSettings rungs;
 	TuneSearch search;
-	std::optional<TuneSearch> grid; // of check_grid
-	std::size_t measured = 0;       // drawings of a candidate on a view
-	std::size_t cached = 0;         // that were not made, but known
-	double prepared_s = 0.0;        // levels, references at full size, samples, volumes, shaders: what a grid needs as well
-	double busy = 0.0;              // share of the processors that other programs took meanwhile
-	double coarse_s = 0.0;          // G-buffers and references of coarse pictures: what the search alone needs
+	std::size_t measured = 0; // drawings of a candidate on a view
+	std::size_t cached = 0;   // that were not made, but known
+	double prepared_s = 0.0;  // levels, references at full size, samples, volumes, shaders: what a grid needs as well
+	double busy = 0.0;        // share of the processors that other programs took meanwhile
+	double coarse_s = 0.0;    // G-buffers and references of coarse pictures: what the search alone needs
 	std::optional<CandidateComparison> runner_up; // to the pick
 	std::optional<MethodRecipe> shape_before;     // of what was taken, where its strength and power were fitted to these levels
 };
@@ -152,8 +150,5 @@ TuneTexts tuneTexts(const TuneReport& report);
 
 // Schema "nook.tune/1".
 std::string tuneJson(const TuneReport& report, const TuneText& text);
-
-// How the search did against everything measured in full; empty without --check-grid.
-std::string gridText(const TuneReport& report);
 
 } // namespace nook

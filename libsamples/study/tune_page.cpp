@@ -36,7 +36,7 @@ std::string milliseconds(double seconds)
 
 std::vector<std::size_t> front(const TuneReport& report)
 {
-	return frontOf(report.grid ? *report.grid : report.search, report.rungs.once());
+	return frontOf(report.search, report.rungs.once());
 }
 
 // Returns the candidates that were measured at full size on all views, fastest first.
@@ -221,27 +221,6 @@ Json comparisonJson(const TuneReport& report)
 
 } // namespace
 
-std::string gridText(const TuneReport& report)
-{
-	if (!report.grid || !report.grid->pick || !report.search.pick)
-	{
-		return {};
-	}
-	const TuneSearch& grid = *report.grid;
-	const Tried& best = grid.tried[*grid.pick];
-	const Tried& pick = report.search.tried[*report.search.pick];
-	const bool budget = report.settings.goal.budget_s.has_value();
-	const double ratio = budget ? pick.error / best.error : pick.time_s / best.time_s;
-	return "Everything measured in full: the best is " + report.candidates[*grid.pick].name() + ", " + milliseconds(best.time_s) +
-		   " ms, " + fixedText(best.error, 4) + "; the pick's " + (budget ? "error" : "time") + " is " + fixedText(ratio, 3) +
-		   " times that. Measuring took the search " + fixedText(report.search.cost_s, 1) + " s and would take the grid " +
-		   fixedText(grid.cost_s, 1) + " s: a ratio of " + fixedText(report.search.cost_s / grid.cost_s, 3) + ". It is " +
-		   fixedText((report.search.cost_s + report.coarse_s + report.prepared_s) / (grid.cost_s + report.prepared_s), 3) +
-		   " with the " + fixedText(report.prepared_s, 1) + " s that both need for preparing and the " +
-		   fixedText(report.coarse_s, 1) + " s that the search alone needs, and " +
-		   fixedText(report.search.pictures / grid.pictures, 3) + " by pixels drawn.";
-}
-
 std::string tuneLines(const TuneReport& report, const TuneText& text)
 {
 	std::string lines = goalText(report.settings) + " on " + report.renderer + "\n" + whatWasMeasured(report) + "\n";
@@ -268,7 +247,7 @@ std::string tuneLines(const TuneReport& report, const TuneText& text)
 		lines += joinedText(text.emission->use, "", [](const std::string& line) { return "use: " + line + "\n"; });
 	}
 	lines += searchText(report) + "\n";
-	return lines + (report.grid ? gridText(report) + "\n" : "");
+	return lines;
 }
 
 TuneTexts tuneTexts(const TuneReport& report)
@@ -316,16 +295,9 @@ std::string tuneJson(const TuneReport& report, const TuneText& text)
 	json["busy"] = report.busy;
 	json["runner_up"] = report.runner_up ? comparisonJson(report) : Json();
 	json["confidence"] = confidenceText(report);
-	json["front"] = mapped(frontOf(report.grid ? *report.grid : report.search, report.rungs.once()),
-						   [&](const std::size_t i) { return report.candidates[i].name(); });
+	json["front"] =
+		mapped(frontOf(report.search, report.rungs.once()), [&](const std::size_t i) { return report.candidates[i].name(); });
 	json["candidates"] = candidatesJson(report, report.search);
-	if (report.grid)
-	{
-		json["grid"] = {{"best", report.grid->pick ? triedJson(report, *report.grid, *report.grid->pick) : Json()},
-						{"seconds", report.grid->cost_s},
-						{"text", gridText(report)},
-						{"candidates", candidatesJson(report, *report.grid)}};
-	}
 	json["emitted"] = text.emission != nullptr ? emissionJson(*text.emission) : Json();
 	const TuneTexts texts = tuneTexts(report);
 	json["texts"] = {{"goal", texts.goal},

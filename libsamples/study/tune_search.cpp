@@ -76,28 +76,6 @@ public:
 		return m_made;
 	}
 
-	TuneSearch whole(const TuneSearch* known)
-	{
-		ProgressCounter progress(m_progress, "grid", m_made.tried.size());
-		for (const std::size_t i : all())
-		{
-			const Tried* const before = known != nullptr ? &known->tried[i] : nullptr;
-			if (before != nullptr && isFrom(*before, last()))
-			{
-				m_made.tried[i] = *before;
-				count(last(), before->trial);
-				m_made.rungs.back().candidates += 1;
-			}
-			else
-			{
-				measureOne(i, last());
-			}
-			progress.finishOne();
-		}
-		choose();
-		return m_made;
-	}
-
 private:
 	std::size_t last() const
 	{
@@ -369,12 +347,6 @@ TuneSearch searchCandidates(std::size_t candidates, const TuneGoal& goal, const 
 							const MeasureTrial& measure, const Progress& progress)
 {
 	return HalvingSearch(candidates, goal, settings, measure, progress).halve();
-}
-
-TuneSearch searchGrid(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings, const MeasureTrial& measure,
-					  const TuneSearch* known, const Progress& progress)
-{
-	return HalvingSearch(candidates, goal, settings, measure, progress).whole(known);
 }
 
 std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t rung)

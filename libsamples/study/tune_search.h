@@ -3,9 +3,9 @@
 // only coarsely: successive halving (Karnin, Koren, Somekh 2013; Jamieson and Talwalkar 2016) over the size of the picture, the
 // number of views and the repetitions of a drawing.
 //
-// Which candidates go on is told by what they are expected to do at the last rung: what is bounded, time or error, is scaled by
-// what a few of them, near the bound, were found to have there. At the end nothing is only expected to be better than the pick:
-// what is, is drawn on all views. Of candidates whose errors do not differ significantly the cheapest is taken.
+// Candidates go on by what the last rung is expected to find: the bounded quantity, time or error, is scaled by that of a few
+// candidates near the bound, which are drawn there. In the end no candidate is only expected to be better than the pick: those that
+// are get drawn on all views. The cheapest candidate is taken among those whose errors do not differ significantly.
 #pragma once
 
 #include "core/progress.h"
@@ -23,7 +23,7 @@ namespace nook
 // A candidate's measurements on some views → its time and its error over levels, whether that reaches a goal, and how certain it is
 // that another one is better.
 
-// On one view.
+// A candidate on one view.
 struct ViewTrial
 {
 	std::size_t level = 0; // views of one level count as one level
@@ -31,7 +31,7 @@ struct ViewTrial
 	double low_s = 0.0;    // quartiles
 	double high_s = 0.0;
 	double error = 0.0;
-	uint64_t bytes = 0; // of what its level needs for it: volumes, or a bake
+	uint64_t bytes = 0; // size of what its level needs for it: volumes, or a bake
 };
 
 struct Trial
@@ -41,14 +41,14 @@ struct Trial
 	double pictures = 0.0; // of full size: the pixels of all drawings, those that warm up among them
 };
 
-// Over levels; within a level times and errors are means over its views.
+// How levels are summed up; within a level, times and errors are means over its views.
 enum class OverLevels
 {
 	mean,
 	worst, // the greatest time of any level, and the greatest error of any
 };
 
-// One of the two.
+// Exactly one of the two bounds is set.
 struct TuneGoal
 {
 	std::optional<double> budget_s;  // > 0: least error within
@@ -59,10 +59,10 @@ struct TuneGoal
 double timeOf(const Trial& trial, OverLevels over);
 double errorOf(const Trial& trial, OverLevels over);
 
-// Returns the bytes of the level that needs most.
+// Returns the bytes of the level that needs the most.
 uint64_t bytesOf(const Trial& trial);
 
-// Reaches the goal.
+// Returns whether that time or that error is within the bound.
 bool reaches(const TuneGoal& goal, double time_s, double error);
 
 // How sure it is that one candidate is better than another, from trials on the same views.
@@ -103,7 +103,7 @@ struct TuneSearchSettings
 	}
 };
 
-// The best known of a candidate.
+// What is known of a candidate.
 struct Tried
 {
 	std::size_t candidate = 0;
@@ -114,7 +114,7 @@ struct Tried
 	std::string failed; // what made it impossible; else empty
 };
 
-// Measured at this rung or a later one.
+// Returns whether it was measured at this rung or a later one.
 inline bool isFrom(const Tried& tried, std::size_t rung)
 {
 	return tried.failed.empty() && tried.rung >= rung && !tried.trial.views.empty();
@@ -148,11 +148,6 @@ struct TuneSearch
 TuneSearch searchCandidates(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings,
 							const MeasureTrial& measure, const Progress& progress = {});
 
-// Measures everything at the last rung, for comparison with the search. Measurements of `known` at that rung are used again, and
-// their cost counts.
-TuneSearch searchGrid(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings, const MeasureTrial& measure,
-					  const TuneSearch* known = nullptr, const Progress& progress = {});
-
 // Returns the front of those measured at this rung or a later one, by time.
 std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t rung);
 
@@ -164,13 +159,15 @@ std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t rung);
 inline constexpr double kAlikeError = 1.02;
 inline constexpr double kAlikeTime = 0.95;
 
-// By how much what a rung expects may be off, and the candidate still goes on: at coarse size, and at full size with fewer views.
+// A candidate goes on if what its rung expects exceeds the bound by no more than these factors: at coarse size, and at full size
+// with fewer views.
 // Tuned on the grids of test_tune_search.cpp.
 inline constexpr double kTimeSlack = 1.5;
 inline constexpr double kErrorSlack = 1.15;
 inline constexpr double kFullSizeSlack = 1.06;
 
-// Drawn once on all views: errors are what they are, and a time this much longer is not that of the pick.
+// Candidates drawn once on all views have their final errors; a time that exceeds the budget by more than this factor rules one
+// out.
 inline constexpr double kOnceSlack = 1.15;
 
 class TuneChoice
@@ -197,15 +194,16 @@ public:
 	// Returns those drawn once on all views that can be the pick, best first; the nearest where none can.
 	std::vector<std::size_t> possible(const TuneSearch& search, const std::vector<std::size_t>& left) const;
 
-	// Sets pick, or nearest, and instead_of and runner_up. Of what was measured in full the one with the least of what is wanted;
-	// where that is an error, the fastest of those that are like it.
+	// Sets pick, or nearest, and instead_of and runner_up. The pick has the least wanted quantity of those measured in full; where
+	// that is an error, it is the fastest of those that are alike.
 	void choose(TuneSearch& search) const;
 
-	// Not measured in full, but expected to reach the goal and to be better than the pick: the best of them. None where there is no
-	// pick.
+	// Returns the best candidate that was not measured in full, but is expected to reach the goal and to be better than the pick.
+	// None if there is no pick.
 	std::optional<std::size_t> expectedBetter(const TuneSearch& search) const;
 
-	// Not measured in full, and expected to be the fastest of those that are like the pick, or what comes nearest.
+	// Returns a candidate that was not measured in full, and is expected to be the fastest of those that are like the pick, or the
+	// nearest.
 	std::optional<std::size_t> expectedAlike(const TuneSearch& search) const;
 
 private:

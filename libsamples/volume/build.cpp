@@ -5,7 +5,6 @@
 #include "core/text.h"
 #include "core/work_units.h"
 #include "scene/reference.h"
-#include "volume/sight.h"
 
 #include <glm/geometric.hpp>
 
@@ -54,7 +53,7 @@ namespace
 
 bool dropsAnything(const DropSettings& drop)
 {
-	return drop.no_receiver || drop.sides || drop.inside || drop.hidden || drop.below > 0.0;
+	return drop.no_receiver || drop.sides || drop.inside || drop.below > 0.0;
 }
 
 bool simplifies(const VolumeSettings& settings)
@@ -100,14 +99,6 @@ void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& buil
 								 " in held-out views, expected at most " +
 								 roundedText(rmse ? check.before.rmse : check.before.eq14, 3) +
 								 ", the error of the paper's curve, which is used instead");
-	}
-	if (built.dropped.hidden_lost)
-	{
-		built.warnings.push_back(level.name + ": drop-hidden: a sampled point still loses " +
-								 roundedText(built.dropped.hidden_check.greatest, 3) + " of what it sees, after " +
-								 std::to_string(built.dropped.hidden_samples) + " samples kept " +
-								 std::to_string(built.dropped.hidden_restored) + " more sides; expected at most " +
-								 roundedText(settings.drop.hidden_bound, 3));
 	}
 	const double missed = built.dropped.check_rays > 0
 							  ? static_cast<double>(built.dropped.check_missed) / static_cast<double>(built.dropped.check_rays)
@@ -185,22 +176,15 @@ VolumeSettings withinMemory(const Level& level, const VolumeSettings& settings, 
 	return less;
 }
 
-// Drops volumes from built.set that darken nothing; returns the sides dropped as hidden.
-VolumeSet dropFrom(BuiltVolumes& built, const Tracer& tracer, const VolumeSettings& settings, double surface_m,
-				   const RunSettings& run)
+// Drops volumes from built.set that darken nothing.
+void dropFrom(BuiltVolumes& built, const Tracer& tracer, const VolumeSettings& settings, const RunSettings& run)
 {
 	VolumeSet& set = built.set;
 	DropSettings drop = settings.drop;
-	drop.surface_m = surface_m;
 	drop.simplified_m = built.merged.deviation_m;
 	Dropped dropped = dropVolumes(set.occluders, tracer, set.distance_m, set.exact_bounds, drop, run);
 	built.dropped = dropped.counts;
 	set.occluders = std::move(dropped.occluders);
-	VolumeSet hidden;
-	hidden.distance_m = set.distance_m;
-	hidden.exact_bounds = set.exact_bounds;
-	hidden.occluders = std::move(dropped.hidden);
-	return hidden;
 }
 
 CompensateSettings compensation(const VolumeSettings& settings)
@@ -379,16 +363,13 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& wanted, cons
 	}
 	findOccluders(built, settings.occluding != nullptr ? *settings.occluding : level, tracer.get(), settings, run);
 	VolumeSet all;
-	VolumeSet hidden;
-	const double surface_m =
-		built.merged.deviation_m + (settings.occluders.merge ? settings.occluders.flat * settings.distance_m : 0.0);
 	if (settings.verify && (dropsAnything(settings.drop) || settings.trim))
 	{
 		all = set;
 	}
 	if (dropsAnything(settings.drop))
 	{
-		hidden = dropFrom(built, *tracer, settings, surface_m, run);
+		dropFrom(built, *tracer, settings, run);
 	}
 	if (isShare(run)) // which volumes remain, only all shares together know
 	{
@@ -410,8 +391,7 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& wanted, cons
 	if (settings.verify)
 	{
 		const std::vector<ReferencePoint> receivers = sampleReceivers(*tracer, set.distance_m, *settings.verify, run);
-		const HiddenShares behind = hiddenShares(hidden, *tracer, receivers, sightLift(*tracer, set.distance_m, surface_m), run);
-		built.verified = verifyVolumes(all.occluders.polygons.empty() ? set : all, set, receivers, run, behind.behind);
+		built.verified = verifyVolumes(all.occluders.polygons.empty() ? set : all, set, receivers, run);
 	}
 	set.clusters.clear();
 	warn(level, settings, built);

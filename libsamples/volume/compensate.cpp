@@ -8,7 +8,6 @@
 #include "core/math.h"
 #include "scene/camera_choice.h"
 #include "volume/receivers.h"
-#include "volume/sight.h"
 
 #include <algorithm>
 #include <cassert>

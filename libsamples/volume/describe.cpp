@@ -73,40 +73,15 @@ void addDetail(const DetailChoice& choice, Facts& to)
 	}
 }
 
-void addHidden(const DropCounts& dropped, Facts& to)
-{
-	const HiddenCheck& check = dropped.hidden_check;
-	to.whole("hidden_sides", dropped.hidden_sides);
-	to.whole("hidden_segments", dropped.hidden_segments);
-	to.whole("hidden_unsettled", dropped.hidden_unsettled);
-	to.whole("hidden_restored", dropped.hidden_restored);
-	to.whole("hidden_samples", dropped.hidden_samples);
-	to.whole("hidden_lost", dropped.hidden_lost ? 1 : 0);
-	to.whole("hidden_check_receivers", check.receivers);
-	to.whole("hidden_check_contributions", check.volumes);
-	to.whole("hidden_check_seen", check.seen);
-	to.number("hidden_check_greatest", check.greatest);
-	to.number("hidden_check_mean", check.mean);
-	if (dropped.hidden_sides > 0)
-	{
-		to.line("  " + std::to_string(dropped.hidden_sides) + " sides see nothing that they darken (sampled); other samples: of " +
-				std::to_string(check.volumes) + " contributions " + std::to_string(check.seen) + " are seen, at most " +
-				roundedText(check.greatest, 4) + " at one of " + std::to_string(check.receivers) + " points, " +
-				roundedText(check.mean, 4) + " on average");
-	}
-}
-
 void addDropped(const DropCounts& dropped, Facts& to)
 {
 	to.reason("dropped_inside", dropped.inside, "dropped, inside solids");
 	to.reason("dropped_convex", dropped.convex, "dropped, no surface there sees them");
 	to.reason("dropped_alone", dropped.alone, "dropped, no surface within them");
 	to.reason("dropped_enclosed", dropped.enclosed, "dropped, darken what is inside solids");
-	to.reason("dropped_hidden", dropped.hidden, "dropped, darken what is behind something else");
 	to.reason("dropped_unseen", dropped.unseen, "dropped, darken what no camera sees");
 	to.reason("dropped_below", dropped.below, "dropped, contribute too little");
 	to.reason("turned", dropped.turned, "two-sided, now one-sided");
-	addHidden(dropped, to);
 	to.number("greatest_loss", dropped.greatest_loss);
 	if (dropped.below > 0)
 	{
@@ -147,22 +122,10 @@ void addVerified(const std::string& prefix, const VerifyResult& verified, const 
 	to.number(prefix + "_greatest", verified.greatest);
 	to.number(prefix + "_greatest_compensated", verified.greatest_compensated);
 	to.number(prefix + "_mean", verified.mean);
-	to.number(prefix + "_greatest_seen", verified.greatest_seen);
-	to.number(prefix + "_greatest_seen_compensated", verified.greatest_seen_compensated);
-	to.number(prefix + "_mean_seen", verified.mean_seen);
-	to.whole(prefix + "_behind", verified.behind);
-	to.number(prefix + "_greatest_behind", verified.greatest_behind);
 	to.numbers(prefix + "_worst_m", {verified.worst_position.x, verified.worst_position.y, verified.worst_position.z});
 	to.line(what + " occlusion by at most " + roundedText(verified.greatest, 4) + " (" +
 			roundedText(verified.greatest_compensated, 4) + " compensated), by " + roundedText(verified.mean, 4) +
 			" on average, at " + std::to_string(verified.receivers) + " points");
-	if (verified.behind > 0)
-	{
-		to.line("  without what came through something opaque, up to " + roundedText(verified.greatest_behind, 4) + " at " +
-				std::to_string(verified.behind) + " of them: by at most " + roundedText(verified.greatest_seen, 4) + " (" +
-				roundedText(verified.greatest_seen_compensated, 4) + " compensated), by " + roundedText(verified.mean_seen, 4) +
-				" on average");
-	}
 }
 
 void addErrors(const CurveCheck& check, Facts& to)

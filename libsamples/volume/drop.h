@@ -15,17 +15,12 @@
 namespace nook
 {
 
-inline constexpr double kHiddenBound = 1.0 / 64.0; // four 8-bit steps
-
 struct DropSettings
 {
-	bool no_receiver = true; // drop polygons without a receiver in their volume that has them above its tangent plane
-	bool sides = true;       // make two-sided polygons with receivers on only one side one-sided
-	bool inside = true;      // drop polygons inside solids, and ignore receivers there (sampled)
-	bool hidden = false;     // drop sides with something opaque between them and all their receivers (sampled, sight.h; expensive)
-	double hidden_bound = kHiddenBound; // occlusion that a sampled receiver may lose by `hidden`; above it more sides are kept
-	double surface_m = 0.0;             // ≥ 0: distance of polygons from the level's surfaces
-	double simplified_m = 0.0;          // ≥ 0: the part due to simplification; points this far in front of a side belong to it
+	bool no_receiver = true;   // drop polygons without a receiver in their volume that has them above its tangent plane
+	bool sides = true;         // make two-sided polygons with receivers on only one side one-sided
+	bool inside = true;        // drop polygons inside solids, and ignore receivers there (sampled)
+	double simplified_m = 0.0; // ≥ 0: how far simplification moved surfaces; points this far in front of a side belong to it
 	double below = 0.0; // drop the smallest contributions as long as no receiver loses more than this in total; 0: none; at most 1
 	bool smooth_normals = true; // receivers may have interpolated normals; else only face normals
 	std::vector<Bounds>
@@ -34,52 +29,31 @@ struct DropSettings
 	std::vector<uint8_t> receivers; // 1 for each triangle whose darkening counts; empty: all
 };
 
-// Visibility, from independent receivers, of the sides dropped as hidden.
-struct HiddenCheck
-{
-	std::size_t receivers = 0;
-	std::size_t volumes = 0; // tested pairs of a receiver and a volume: contributions above kHiddenLeast
-	std::size_t seen = 0;    // pairs with an unblocked segment
-	double greatest = 0.0;   // greatest sum of visible contributions at a receiver
-	double mean = 0.0;
-};
-
-inline constexpr double kHiddenLeast = 1.0 / 1024.0; // of occlusion
-
 struct DropCounts
 {
-	uint64_t polygons = 0;         // before
-	uint64_t kept = 0;             // after
-	uint64_t inside = 0;           // dropped: inside solids, or visible from nowhere
-	uint64_t convex = 0;           // dropped: no surface in their volume has them above its tangent plane
-	uint64_t alone = 0;            // dropped: no surface in their volume
-	uint64_t enclosed = 0;         // dropped: darken only receivers inside solids
-	uint64_t hidden = 0;           // dropped: darken only receivers they cannot see
-	uint64_t hidden_sides = 0;     // hidden sides of all polygons, including those kept for their other side
-	uint64_t hidden_segments = 0;  // segments traced for these
-	uint64_t hidden_unsettled = 0; // sides kept because the test would have needed too many segments
-	uint64_t hidden_restored = 0;  // sides kept because independent receivers saw them
-	uint64_t hidden_samples = 0;   // number of those samples; stops once the loss is within the bound, or at kMostHiddenSamples
-	HiddenCheck hidden_check;      // loss in a further sample
-	bool hidden_lost = false;      // that loss exceeds the bound
-	uint64_t unseen = 0;           // dropped: darken only what is invisible from the boxes
-	uint64_t below = 0;            // dropped: contributions too small
-	uint64_t turned = 0;           // made one-sided
-	double area_m2 = 0.0;          // total area of the input polygons
-	double inside_m2 = 0.0;        // area inside solids, or darkening only what is
-	bool inside_refused = false;   // that was more than half, so the level is inside out and nothing was dropped as inside
-	double greatest_loss = 0.0;    // proven bound of what a receiver loses by `below`
-	uint64_t triangles = 0;        // in the level
-	uint64_t inside_sides = 0;     // triangle sides inside solids; each triangle has two sides
-	uint64_t unseen_sides = 0;     // other sides invisible from the boxes: proven (behind their plane) or sampled
-	uint64_t check_rays = 0;       // rays of an independent sample from the boxes
-	uint64_t check_missed = 0;     // rays that hit a side considered invisible, which then counts as visible
+	uint64_t polygons = 0;       // before
+	uint64_t kept = 0;           // after
+	uint64_t inside = 0;         // dropped: inside solids, or visible from nowhere
+	uint64_t convex = 0;         // dropped: no surface in their volume has them above its tangent plane
+	uint64_t alone = 0;          // dropped: no surface in their volume
+	uint64_t enclosed = 0;       // dropped: darken only receivers inside solids
+	uint64_t unseen = 0;         // dropped: darken only what is invisible from the boxes
+	uint64_t below = 0;          // dropped: contributions too small
+	uint64_t turned = 0;         // made one-sided
+	double area_m2 = 0.0;        // total area of the input polygons
+	double inside_m2 = 0.0;      // area inside solids, or darkening only what is
+	bool inside_refused = false; // that was more than half, so the level is inside out and nothing was dropped as inside
+	double greatest_loss = 0.0;  // proven bound of what a receiver loses by `below`
+	uint64_t triangles = 0;      // in the level
+	uint64_t inside_sides = 0;   // triangle sides inside solids; each triangle has two sides
+	uint64_t unseen_sides = 0;   // other sides invisible from the boxes: proven (behind their plane) or sampled
+	uint64_t check_rays = 0;     // rays of an independent sample from the boxes
+	uint64_t check_missed = 0;   // rays that hit a side considered invisible, which then counts as visible
 };
 
 struct Dropped
 {
 	Occluders occluders;
-	Occluders hidden; // sides dropped as hidden, each as a one-sided polygon
 	DropCounts counts;
 };
 

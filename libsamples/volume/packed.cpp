@@ -132,6 +132,17 @@ void storeBox(nook_volumes::Cluster& cluster, const Box& box, glm::dvec3 origin)
 	}
 }
 
+// Normal of the front with a length of twice the area.
+glm::dvec3 areaVector(std::span<const glm::dvec3> corners)
+{
+	glm::dvec3 sum(0.0);
+	for (std::size_t i = 2; i < corners.size(); ++i)
+	{
+		sum += glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
+	}
+	return sum;
+}
+
 // A cluster's part of all arrays; ranges count from 0.
 struct PackedPart
 {
@@ -203,7 +214,7 @@ private:
 		if (numbers.empty())
 		{
 			m_made.flat_polygons += 1;
-			m_made.flat_area_m2 += areaOf(corners);
+			m_made.flat_area_m2 += 0.5 * glm::length(areaVector(corners));
 			return;
 		}
 		append(polygon, numbers);
@@ -213,16 +224,6 @@ private:
 		{
 			m_made.plane_error_m = std::max(m_made.plane_error_m, std::fabs(glm::dot(made_front, corner - made[0])));
 		}
-	}
-
-	static double areaOf(std::span<const glm::dvec3> corners)
-	{
-		glm::dvec3 sum(0.0);
-		for (std::size_t i = 2; i < corners.size(); ++i)
-		{
-			sum += glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
-		}
-		return 0.5 * glm::length(sum);
 	}
 
 	// Removes corners where the outline does not turn left, seen from the front, until it is convex; removes all if nothing
@@ -440,17 +441,6 @@ struct Item
 	double share = 0.0; // α · area, m²: its contribution to occlusion
 	int kind = 0;       // polygons of different kinds never share a cluster; larger ones first
 };
-
-// Normal of the front with a length of twice the area.
-glm::dvec3 areaVector(std::span<const glm::dvec3> corners)
-{
-	glm::dvec3 sum(0.0);
-	for (std::size_t i = 2; i < corners.size(); ++i)
-	{
-		sum += glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
-	}
-	return sum;
-}
 
 // Bounding boxes of volumes are never smaller than δ, so polygons up to that size form one class; each further class is four times
 // the previous.

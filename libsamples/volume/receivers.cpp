@@ -8,9 +8,10 @@
 #include "scene/topology.h"
 #include "volume/drop.h"
 #include "volume/evaluate.h"
-#include "volume/sight.h"
 
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <array>
@@ -290,13 +291,6 @@ Grid gridOf(int count)
 	return {columns, (count + columns - 1) / columns};
 }
 
-glm::dvec3 acrossOf(const Level& level, std::size_t triangle)
-{
-	const glm::uvec3 corner = level.triangles[triangle];
-	const glm::dvec3 a = level.positions[corner.x];
-	return glm::cross(level.positions[corner.y] - a, level.positions[corner.z] - a);
-}
-
 void addViews(const Tracer& tracer, const ReceiverSettings& settings, std::vector<ReferencePoint>& points, const RunSettings& run)
 {
 	const Grid grid = gridOf(settings.per_view);
@@ -323,7 +317,7 @@ public:
 		for (std::size_t i = 0; i < m_until.size(); ++i)
 		{
 			const bool there = level.material_list[level.materials[i]].coverage > 0.0;
-			sum += there ? glm::length(acrossOf(level, i)) : 0.0;
+			sum += there ? glm::length(acrossOf(cornersOf(level, i))) : 0.0;
 			m_until[i] = sum;
 		}
 	}
@@ -369,7 +363,7 @@ void addSurfaces(const Tracer& tracer, double distance_m, const ReceiverSettings
 		const glm::dvec3 c = level.positions[corner[static_cast<int>((turn + 2) % 3)]];
 		double u = random.uniform();
 		double v = random.uniform();
-		const glm::dvec3 across = acrossOf(level, triangle);
+		const glm::dvec3 across = acrossOf(cornersOf(level, triangle));
 		const double area = glm::length(across);
 		if (i >= settings.by_area)
 		{
@@ -393,6 +387,42 @@ glm::dvec3 directionOf(Random& random)
 	const SinCos turn = sinCosOf(2.0 * kPi * random.uniform());
 	const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
 	return {r * turn.cos, r * turn.sin, z};
+}
+
+glm::dvec3 pointOf(const std::array<glm::dvec3, 3>& triangle, double u, double v)
+{
+	const auto& [a, b, c] = triangle;
+	const bool beyond = u + v > 1.0;
+	return a + (beyond ? 1.0 - u : u) * (b - a) + (beyond ? 1.0 - v : v) * (c - a);
+}
+
+Eye::Eye(const Tracer& tracer, const LevelCamera& camera, int width_px, int height_px)
+	: m_tracer(tracer), m_view(viewOf(camera, width_px, height_px)), m_projector(m_view.projection, width_px, height_px),
+	  m_world_from_camera(glm::inverse(m_view.camera_from_world))
+{
+}
+
+std::optional<ReferencePoint> Eye::at(double x, double y) const
+{
+	const ViewLine line = m_projector.lineOf({x, y});
+	return surfaceAlong(m_tracer, glm::dvec3(m_world_from_camera * glm::dvec4(line.at, 1.0)),
+						glm::dmat3(m_world_from_camera) * line.along, std::numeric_limits<double>::infinity());
+}
+
+std::optional<ReferencePoint> surfaceAlong(const Tracer& tracer, glm::dvec3 from, glm::dvec3 along, double reach)
+{
+	const RayHit hit = tracer.nearest(from, along, reach);
+	if (!hit.hit)
+	{
+		return std::nullopt;
+	}
+	const glm::dvec3 across = acrossOf(cornersOf(tracer.level(), hit.triangle));
+	const double area = glm::length(across);
+	if (!(area > 0.0))
+	{
+		return std::nullopt;
+	}
+	return ReferencePoint{from + hit.distance * along, across * ((hit.front ? 1.0 : -1.0) / area), 0.0};
 }
 
 MaterialSides materialSides(const Tracer& tracer, const RunSettings& run)
@@ -539,14 +569,14 @@ std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, const Ru
 }
 
 std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distance_m, const ReceiverSettings& settings,
-											const RunSettings& run, const MaterialSides* materials)
+											const RunSettings& run)
 {
 	std::vector<ReferencePoint> points;
 	if (settings.views > 0 && settings.per_view > 0)
 	{
 		addViews(tracer, settings, points, run);
 	}
-	addSurfaces(tracer, distance_m, settings, materials != nullptr ? *materials : materialSides(tracer, run), points);
+	addSurfaces(tracer, distance_m, settings, materialSides(tracer, run), points);
 	return points;
 }
 
@@ -569,9 +599,8 @@ std::vector<double> sumsAt(const VolumeSet& volumes, std::span<const ReferencePo
 }
 
 VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::span<const ReferencePoint> receivers,
-						   const RunSettings& run, std::span<const double> behind)
+						   const RunSettings& run)
 {
-	assert(behind.empty() || behind.size() == receivers.size());
 	const std::vector<double> before = sumsAt(all, receivers, run);
 	const std::vector<double> after = sumsAt(kept, receivers, run);
 	VerifyResult result;
@@ -583,14 +612,6 @@ VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::spa
 		result.mean += difference;
 		result.mean_compensated += compensated;
 		result.greatest_compensated = std::max(result.greatest_compensated, compensated);
-		const double from_behind = behind.empty() ? 0.0 : behind[i];
-		const double seen = before[i] - from_behind; // sum over all volumes
-		const double seen_compensated = std::fabs(kept.compensation.at(std::max(0.0, seen)) - kept.compensation.at(after[i]));
-		result.behind += from_behind > kHiddenLeast ? 1U : 0U;
-		result.greatest_behind = std::max(result.greatest_behind, from_behind);
-		result.greatest_seen = std::max(result.greatest_seen, std::fabs(seen - after[i]));
-		result.greatest_seen_compensated = std::max(result.greatest_seen_compensated, seen_compensated);
-		result.mean_seen += std::fabs(seen - after[i]);
 		if (difference > result.greatest || i == 0)
 		{
 			result.greatest = difference;
@@ -599,7 +620,6 @@ VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::spa
 	}
 	const double count = std::max(1.0, static_cast<double>(receivers.size()));
 	result.mean /= count;
-	result.mean_seen /= count;
 	result.mean_compensated /= count;
 	return result;
 }

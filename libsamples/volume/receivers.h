@@ -4,14 +4,18 @@
 
 #include "core/progress.h"
 #include "core/random.h"
+#include "scene/camera.h"
 #include "scene/reference.h"
 #include "scene/tracer.h"
 #include "volume/volumes.h"
 
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,6 +28,29 @@ inline constexpr uint8_t kBackSeen = 2;
 
 // A uniformly distributed direction.
 glm::dvec3 directionOf(Random& random);
+
+// Maps a point of the unit square, folded over its diagonal, to the triangle; preserves uniformity.
+glm::dvec3 pointOf(const std::array<glm::dvec3, 3>& triangle, double u, double v);
+
+// The nearest surface from a point along a direction, within `reach` times the direction's length, with the normal of the side that
+// is hit.
+std::optional<ReferencePoint> surfaceAlong(const Tracer& tracer, glm::dvec3 from, glm::dvec3 along, double reach);
+
+class Eye
+{
+public:
+	// Keeps a reference to the tracer. The picture's size is in pixels.
+	Eye(const Tracer& tracer, const LevelCamera& camera, int width_px, int height_px);
+
+	// Position in pixels from the upper left corner. The result has the normal of the visible side; none for the sky.
+	std::optional<ReferencePoint> at(double x, double y) const;
+
+private:
+	const Tracer& m_tracer;
+	View m_view;
+	Projector m_projector;
+	glm::dmat4 m_world_from_camera;
+};
 
 struct SideSettings
 {
@@ -83,10 +110,9 @@ struct ReceiverSettings
 	uint32_t seed = 1;
 };
 
-// Surface points that can be seen from outside solids, with the triangle's normal on that side. `materials`: the result of
-// materialSides(), if already known.
+// Surface points that can be seen from outside solids, with the triangle's normal on that side.
 std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distance_m, const ReceiverSettings& settings,
-											const RunSettings& run, const MaterialSides* materials = nullptr);
+											const RunSettings& run);
 
 struct VerifyResult
 {
@@ -95,21 +121,14 @@ struct VerifyResult
 	double greatest_compensated = 0.0; // likewise for the drawn values, after `kept`'s curve
 	double mean = 0.0;
 	double mean_compensated = 0.0;
-	// Excluding contributions from behind opaque surfaces (hidden.h).
-	double greatest_seen = 0.0;
-	double greatest_seen_compensated = 0.0;
-	double mean_seen = 0.0;
-	std::size_t behind = 0; // receivers with more than kHiddenLeast from behind
-	double greatest_behind = 0.0;
 	glm::dvec3 worst_position{0.0}; // where `greatest` occurs
 };
 
 // VolumeEvaluator::occlusion() at points.
 std::vector<double> sumsAt(const VolumeSet& volumes, std::span<const ReferencePoint> points, const RunSettings& run);
 
-// `behind`: for each receiver the part of `all` that comes from behind opaque surfaces, wrongly; empty: none.
 VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::span<const ReferencePoint> receivers,
-						   const RunSettings& run, std::span<const double> behind = {});
+						   const RunSettings& run);
 
 // Returns the area of a convex polygon.
 double polygonArea(std::span<const glm::dvec3> corners);

@@ -146,14 +146,6 @@ bool reaches(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triang
 	return clipped(region, triangle, shape) > 0;
 }
 
-std::size_t partWithin(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triangle, std::vector<glm::dvec3>& corners)
-{
-	Clipped shape;
-	const std::size_t size = clipped(region, triangle, shape);
-	corners.insert(corners.end(), shape.begin(), shape.begin() + static_cast<std::ptrdiff_t>(size));
-	return size;
-}
-
 bool receiverSide(const Level& level, uint32_t triangle, int side, bool smooth_normals, ReceiverSide& receiver)
 {
 	const glm::uvec3 corner = level.triangles[triangle];

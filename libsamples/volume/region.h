@@ -148,9 +148,6 @@ VolumeRegion regionOf(std::span<const glm::dvec3> corners, glm::dvec3 front, glm
 // True if some point of the triangle is in the region.
 bool reaches(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triangle);
 
-// Appends that part of the triangle, a convex polygon, to `corners`. Returns the number of corners, 0 if there is none.
-std::size_t partWithin(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triangle, std::vector<glm::dvec3>& corners);
-
 // A side of a triangle as receiver.
 struct ReceiverSide
 {

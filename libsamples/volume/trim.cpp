@@ -8,7 +8,6 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "volume/evaluate.h"
-#include "volume/sight.h"
 #include "volume/volumes.h"
 
 #include <glm/common.hpp>

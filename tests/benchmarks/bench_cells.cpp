@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exact cells compared with the paper's grids: time, and the maximum and rms error of the grids' integrals (relative to an even
-// cell).
+// Time of exact cells by their count.
 #include "pattern/cells.h"
 #include "pattern/recipe.h"
 
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
+#include <string>
 
 namespace
 {
@@ -34,29 +31,6 @@ void exact(benchmark::State& state)
 	{
 		benchmark::DoNotOptimize(nook::exactCells(pattern.domain, pattern.points));
 	}
-	name(state);
-}
-
-void discrete(benchmark::State& state)
-{
-	const nook::Pattern pattern = startOf(state);
-	nook::Cells cells;
-	for ([[maybe_unused]] const auto round : state)
-	{
-		cells = nook::discreteCells(pattern.domain, pattern.points);
-	}
-	const nook::Cells truth = nook::exactCells(pattern.domain, pattern.points);
-	double greatest = 0.0;
-	double squares = 0.0;
-	const auto count = static_cast<double>(pattern.count());
-	for (std::size_t i = 0; i < pattern.count(); ++i)
-	{
-		const double error = count * std::fabs(cells.integrals[i] - truth.integrals[i]);
-		greatest = std::max(greatest, error);
-		squares += error * error;
-	}
-	state.counters["greatest_error"] = greatest;
-	state.counters["rms_error"] = std::sqrt(squares / count);
 	name(state);
 }
 
@@ -87,5 +61,4 @@ void countsUpToAll(benchmark::internal::Benchmark* benchmark)
 } // namespace
 
 BENCHMARK(exact)->Apply(domainsAndCounts)->Apply(countsUpToAll);
-BENCHMARK(discrete)->Apply(domainsAndCounts);
 BENCHMARK_MAIN();

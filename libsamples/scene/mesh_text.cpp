@@ -484,6 +484,11 @@ void addFacet(FileMesh& mesh, glm::vec3 normal, std::span<const glm::dvec3> corn
 
 void readFacets(const std::string& bytes, FileMesh& mesh)
 {
+	const std::size_t facets = (bytes.size() - kHead) / 50;
+	mesh.positions.reserve(3 * facets);
+	mesh.normals.reserve(3 * facets);
+	mesh.corners.reserve(3 * facets);
+	mesh.ends.reserve(facets);
 	for (std::size_t at = kHead; at < bytes.size(); at += 50)
 	{
 		std::array<glm::vec3, 4> values; // normal, corners
@@ -518,10 +523,7 @@ public:
 		{
 			end(place);
 			m_normal = numbers(2, place);
-		}
-		else if (keyword == "endfacet" && m_corners.size() != 3)
-		{
-			fail(place);
+			m_open = true;
 		}
 		else if (keyword == "endfacet" || keyword == "endsolid")
 		{
@@ -532,13 +534,13 @@ public:
 	// Ends a facet, if one is open.
 	void end(const TextPlace& place)
 	{
-		if (m_corners.empty())
+		if (m_corners.empty() && !m_open)
 		{
 			return;
 		}
 		if (m_corners.size() != 3)
 		{
-			fail(place);
+			place.fail(std::to_string(m_corners.size()) + " corners of a facet", "3");
 		}
 		if (m_meshes.empty())
 		{
@@ -546,14 +548,10 @@ public:
 		}
 		addFacet(m_meshes.back(), m_normal, m_corners);
 		m_corners.clear();
+		m_open = false;
 	}
 
 private:
-	[[noreturn]] void fail(const TextPlace& place) const
-	{
-		place.fail(std::to_string(m_corners.size()) + " corners of a facet", "3");
-	}
-
 	glm::dvec3 numbers(std::size_t from, const TextPlace& place) const
 	{
 		if (m_words.size() != from + 3)
@@ -567,6 +565,7 @@ private:
 	std::vector<std::string_view> m_words;
 	glm::dvec3 m_normal{0.0};
 	std::vector<glm::dvec3> m_corners; // of the current facet
+	bool m_open = false;               // a facet
 };
 
 } // namespace

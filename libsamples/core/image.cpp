@@ -5,6 +5,7 @@
 #include "core/file.h"
 #include "core/image_codec.h"
 #include "core/isolate.h"
+#include "core/system.h"
 
 #include <algorithm>
 #include <array>
@@ -114,7 +115,7 @@ bool looksOurs(std::string_view bytes)
 std::string beginOf(const std::string& path)
 {
 	std::string bytes(8, '\0');
-	std::ifstream file(path, std::ios::binary);
+	std::ifstream file(nativePath(path), std::ios::binary);
 	file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 	return bytes;
 }

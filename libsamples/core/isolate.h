@@ -57,8 +57,6 @@ int serveRequests(int argc, char** argv, std::span<const WorkerFunction> functio
 
 // Shared by both sides: request header and end-of-message codes.
 
-inline constexpr int kWorkerSocket = 3; // in the worker; its standard streams lead nowhere
-
 struct RequestHead
 {
 	bool limited = false;

@@ -6,6 +6,7 @@
 #include "core/file.h"
 #include "core/lists.h"
 #include "core/parallel.h"
+#include "core/system.h"
 #include "core/words.h"
 #include "core/work_units.h"
 #include "scene/builtin.h"
@@ -51,7 +52,7 @@ void checkReadable(const std::string& path)
 	{
 		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(EFBIG));
 	}
-	const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+	const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(openFile(path, "rb"), &std::fclose);
 	if (file == nullptr)
 	{
 		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(errno));

@@ -41,11 +41,11 @@ std::string besideLevel(const std::string& level_path, std::string name)
 	std::error_code failed;
 	if (std::filesystem::exists(given, failed))
 	{
-		return given.string();
+		return given.generic_string();
 	}
 	// A path from the machine where the level was made: the picture may be next to the level.
 	const std::filesystem::path sibling = folder / std::filesystem::path(name).filename();
-	return std::filesystem::exists(sibling, failed) ? sibling.string() : given.string();
+	return std::filesystem::exists(sibling, failed) ? sibling.generic_string() : given.generic_string();
 }
 
 void checkCounts(const std::string& where, uint64_t triangles, uint64_t vertices, const std::string& counted)

@@ -3,7 +3,9 @@
 
 #include "core/system.h"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
@@ -195,7 +197,7 @@ std::optional<std::string> pathOfWorker(const std::string& program)
 
 std::optional<WorkerStreams> takeStreams(const char* argument)
 {
-	::SetErrorMode(SEM_FAILCRITICALERRORS | SEM_NOGPFAULTERRORBOX); // a crash asks nobody
+	::SetUnhandledExceptionFilter([](EXCEPTION_POINTERS*) -> LONG { return EXCEPTION_EXECUTE_HANDLER; }); // a crash asks nobody
 	char* next = nullptr;
 	const std::intptr_t from = std::strtoll(argument, &next, 10);
 	return *next == ':' ? std::optional(WorkerStreams{from, std::strtoll(next + 1, nullptr, 10)}) : std::nullopt;

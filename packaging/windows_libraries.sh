@@ -44,7 +44,7 @@ library()
 	}
 	if [ "$package" = embree ]; then # takes g++ for Microsoft's compiler, and installs a target that oneTBB's own package lacks
 		sed -i 's/INCLUDE (msvc)/INCLUDE (gnu)/' source/CMakeLists.txt
-		sed -i '/embree.rc/d' source/kernels/CMakeLists.txt
+		sed -i '/embree.rc\|curve_intersector_virtual\|bvh_builder_hair/d' source/kernels/CMakeLists.txt # resources, and curves, which are off
 		sed -i 's/-D_FORTIFY_SOURCE=2//' source/common/cmake/gnu.cmake
 		: >source/common/cmake/installTBB.cmake
 	fi

@@ -32,7 +32,7 @@ library()
 {
 	package=$1
 	shift
-	version=$(apt-cache showsrc --only-source "$package" | sed -n 's/^Version: //p' | sort -V | tail -n 1)
+	version=$(apt-cache showsrc --only-source "$package" | sed -n 's/^Version: \([0-9]*:\)*//p' | sort -V | tail -n 1)
 	licence=$folder/licences/${package}_$version
 	[ ! -e "$licence" ] || return 0
 	echo "$package $version"
@@ -47,6 +47,7 @@ library()
 		sed -i '/embree.rc\|curve_intersector_virtual\|bvh_builder_hair/d' source/kernels/CMakeLists.txt # resources, and curves, which are off
 		sed -i 's/-D_FORTIFY_SOURCE=2//' source/common/cmake/gnu.cmake
 		: >source/common/cmake/installTBB.cmake
+		: >source/readme.pdf # which Debian leaves out
 	fi
 	cmake -S source -B build -G Ninja -DCMAKE_TOOLCHAIN_FILE="$toolchain" -DNOOK_WINDOWS_LIBRARIES="$folder" -DCMAKE_BUILD_TYPE=Release \
 		-DCMAKE_INSTALL_PREFIX="$folder" -DBUILD_SHARED_LIBS=OFF -DBUILD_TESTING=OFF "$@" >log 2>&1 &&

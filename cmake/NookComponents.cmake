@@ -92,7 +92,6 @@ if("levels" IN_LIST NOOK_COMPONENTS)
 	nook_need(levels JPEG libjpeg-dev)
 	nook_need(levels ZLIB zlib1g-dev)
 	nook_need(levels embree libembree-dev 3.13)
-	nook_need(levels assimp libassimp-dev)
 	nook_need(levels meshoptimizer libmeshoptimizer-dev)
 	find_package(draco CONFIG QUIET) # optional: without it, Draco-compressed levels are rejected with the tool that converts them
 endif()

@@ -9,7 +9,7 @@ set -eu
 
 packages="g++ clang llvm libclang-rt-14-dev cmake ninja-build make ccache git
 	libcgal-dev libboost-dev libeigen3-dev libopenimageio-dev libopenexr-dev libpng-dev libjpeg-dev zlib1g-dev libglm-dev libtbb-dev libcli11-dev nlohmann-json3-dev
-	libmeshoptimizer-dev libdraco-dev libassimp-dev libembree-dev libepoxy-dev libglfw3-dev libegl-dev libegl-mesa0 libgl1-mesa-dri pkg-config
+	libmeshoptimizer-dev libdraco-dev libembree-dev libepoxy-dev libglfw3-dev libegl-dev libegl-mesa0 libgl1-mesa-dri pkg-config
 	catch2 libbenchmark-dev libvulkan-dev mesa-vulkan-drivers glslang-tools spirv-tools openimageio-tools xz-utils locales qemu-user-static xvfb xauth chromium fonts-dejavu-core mkdocs python3 mono-mcs abigail-tools"
 
 # For Khronos' glTF validator in one test. Other Node.js builds include npm and conflict with Debian's.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangulates the faces of a mesh and records their defects.
+// Triangulates the faces of a mesh, records their defects, and sends it.
 #pragma once
 
 #include "scene/load_parts.h"
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
@@ -14,27 +15,36 @@
 namespace nook
 {
 
+struct FileMesh
+{
+	std::string name;
+	uint32_t material = 0;
+	std::vector<glm::dvec3> positions;
+	std::vector<glm::vec3> normals; // one per position, or none
+	std::vector<glm::vec2> uvs;     // likewise
+	std::vector<uint32_t> corners;  // indices of positions, face after face
+	std::vector<uint32_t> ends;     // end of each face's corners
+};
+
 class FaceCutter
 {
 public:
-	// Begins a mesh. `positions` must outlive its faces.
-	void start(std::string name, std::span<const glm::dvec3> positions, bool mirrored);
+	// Sends a mesh in metres, with v downward, as triangles (load_parts.h). `path`: names from the root to the mesh. A mirrored
+	// mesh gets the reverse winding.
+	//
+	// A face with fewer than three corners counts as a line; with an index out of range or a non-finite position it becomes one
+	// triangle that the level drops and counts.
+	void send(const FileMesh& mesh, const std::vector<std::string>& path, bool mirrored, ValueWriter& to);
 
-	// A face given by its corners, indices into the positions. With fewer than three corners it counts as a line; with an index out
-	// of range or a non-finite position it becomes one triangle that the level drops and counts.
-	void add(std::span<const uint32_t> corners);
-
-	std::vector<glm::uvec3> triangles; // of the mesh, with reversed winding if it is mirrored
-	Tally lines;                       // over all meshes
+	Tally lines; // over all meshes
 	Tally bad_polygons;
 
 private:
-	void addPolygon(std::span<const uint32_t> corners);
+	void add(std::span<const uint32_t> corners, const FileMesh& mesh);
+	void addPolygon(std::span<const uint32_t> corners, const FileMesh& mesh);
 
-	std::string m_name;
-	std::span<const glm::dvec3> m_positions;
-	bool m_mirrored = false;
-	std::vector<glm::dvec3> m_corners; // of a polygon
+	std::vector<glm::uvec3> m_triangles; // of the mesh
+	std::vector<glm::dvec3> m_corners;   // of a polygon
 };
 
 // Triangulates a polygon in space using its own corners; supports concave ones and holes connected by bridges.

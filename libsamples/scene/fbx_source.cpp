@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads the meshes, materials and cameras of an FBX file, in the worker of load_geometry.cpp.
-//
-// Does not use Assimp 5.2.5, which rounds positions to 32 bits and ignores visibility, levels of detail, scale inheritance, skins,
-// blend shapes and texture transforms.
 #include "scene/fbx.h"
 
 #include "core/base64.h"
@@ -192,23 +189,18 @@ private:
 		m_to.text(index == 0 ? "default" : material.name);
 		m_to.value(static_cast<float>(index == 0 ? 1.0 : opacityOf(material, !opacity.name.empty())));
 		m_to.value(0); // two-sided: FBX has it only on nodes, and exporters set it arbitrarily
-		sendTexture(opacity);
-		Texture colour;
+		m_to.text(opacity.name);
+		m_to.value(MaskUse{opacity.wrap_u, opacity.wrap_v, MaskChannel::alpha_or_first});
+		m_to.value(glm::dmat3(1.0)); // already applied to the coordinates
+		m_to.values(opacity.bytes);
+		std::string colour;
 		for (const std::size_t texture : texturesAt(material, "DiffuseColor"))
 		{
-			colour.name = colour.name.empty() && !contentOf(m_objects[texture]) ? fileOf(m_objects[texture]) : colour.name;
+			colour = colour.empty() && !contentOf(m_objects[texture]) ? fileOf(m_objects[texture]) : colour;
 		}
-		sendTexture(colour);
+		m_to.text(colour);
 		m_textures.push_back(opacity);
 		m_textures.back().bytes.clear();
-	}
-
-	void sendTexture(const Texture& texture)
-	{
-		m_to.text(texture.name);
-		m_to.value(MaskUse{texture.wrap_u, texture.wrap_v, MaskChannel::alpha_or_first});
-		m_to.value(glm::dmat3(1.0)); // already applied to the coordinates
-		m_to.values(texture.bytes);
 	}
 
 	// Explicit opacity if stated. Else from the transparency: colour × factor; a colour alone counts fully, and a factor alone only
@@ -549,36 +541,16 @@ private:
 		const auto named = std::find_if(m_mesh.uvs.begin(), m_mesh.uvs.end(),
 										[&](const FbxLayer& set) { return set.name == texture.uv_set && !texture.uv_set.empty(); });
 		const FbxLayer* const uvs = named != m_mesh.uvs.end() ? &*named : m_mesh.uvs.empty() ? nullptr : &m_mesh.uvs.front();
-		m_positions.clear();
-		m_normals.clear();
-		m_uvs.clear();
-		m_indices.clear();
+		m_part = {m_name, static_cast<uint32_t>(material), {}, {}, {}, {}, {}};
 		for (const std::size_t polygon : polygons)
 		{
 			for (std::size_t corner = firstOf(polygon); corner < m_mesh.ends[polygon]; ++corner)
 			{
 				addCorner(corner, polygon, uvs, texture.uv_of_set);
 			}
+			m_part.ends.push_back(static_cast<uint32_t>(m_part.corners.size()));
 		}
-		m_faces.start(m_name, m_positions, m_mirrored);
-		std::size_t at = 0;
-		for (const std::size_t polygon : polygons)
-		{
-			const std::size_t count = m_mesh.ends[polygon] - firstOf(polygon);
-			m_faces.add({m_indices.data() + at, count});
-			at += count;
-		}
-		m_to.value(MeshHead{static_cast<uint32_t>(material), false});
-		m_to.text(m_name);
-		m_to.value(static_cast<uint32_t>(m_path.size()));
-		for (const std::string& name : m_path)
-		{
-			m_to.text(name);
-		}
-		m_to.values(m_positions);
-		m_to.values(m_normals);
-		m_to.values(m_uvs);
-		m_to.values(m_faces.triangles);
+		m_faces.send(m_part, m_path, m_mirrored, m_to);
 	}
 
 	// Adds a vertex for a corner; a corner with an invalid point refers to no vertex.
@@ -587,21 +559,21 @@ private:
 		const std::size_t point = m_mesh.corners[corner];
 		if (point >= m_mesh.points.size())
 		{
-			m_indices.push_back(~0U);
+			m_part.corners.push_back(~0U);
 			return;
 		}
-		m_indices.push_back(static_cast<uint32_t>(m_positions.size()));
-		m_positions.push_back(m_mesh.points[point]);
+		m_part.corners.push_back(static_cast<uint32_t>(m_part.positions.size()));
+		m_part.positions.push_back(m_mesh.points[point]);
 		if (m_mesh.normals.by != FbxLayer::By::other)
 		{
-			m_normals.push_back(normalAt(corner, point, polygon));
+			m_part.normals.push_back(normalAt(corner, point, polygon));
 		}
 		if (uvs != nullptr)
 		{
 			const std::optional<std::size_t> element = uvs->elementAt(corner, point, polygon, 2);
 			const glm::dvec3 uv = element ? uv_of_set * glm::dvec3(uvs->values[2 * *element], uvs->values[2 * *element + 1], 1.0)
 										  : glm::dvec3(0.0, 1.0, 0.0);
-			m_uvs.emplace_back(uv.x, 1.0 - uv.y);
+			m_part.uvs.emplace_back(uv.x, 1.0 - uv.y);
 		}
 	}
 
@@ -645,11 +617,7 @@ private:
 	std::vector<glm::dmat3> m_turns;  // normal transforms: one, or one per point
 	std::vector<glm::dvec3> m_turned; // normal changes of blend shapes per point; empty: none
 
-	// The current part, with one material.
-	std::vector<glm::dvec3> m_positions;
-	std::vector<glm::vec3> m_normals;
-	std::vector<glm::vec2> m_uvs;
-	std::vector<uint32_t> m_indices;
+	FileMesh m_part; // the current one, with one material
 };
 
 } // namespace

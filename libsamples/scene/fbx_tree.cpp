@@ -396,10 +396,10 @@ private:
 		}
 		value.kind = FbxValue::Kind::text;
 		value.bytes = text;
-		if (isNumberText(text))
+		if (const std::optional<double> number = numberOf(text))
 		{
 			value.kind = FbxValue::Kind::number;
-			value.number = numberOf(text);
+			value.number = *number;
 		}
 		return value;
 	}
@@ -488,7 +488,8 @@ template <class T> bool convert(std::string_view word, T& into)
 			return true;
 		}
 	}
-	return isNumberText(word) && convert(numberOf(word), into);
+	const std::optional<double> number = numberOf(word);
+	return number && convert(*number, into);
 }
 
 std::string quotedNumber(double number)

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Converts the meshes of a checked glTF file, placed by the nodes of its scene, to triangles of a level.
-//
-// Does not use Assimp 5.2.5: it numbers materials by first use, so that masks end up on other surfaces; it reads quantised numbers
-// as floats, rejects a file for one empty primitive, and keeps transforms at 32 bits.
 #include "scene/gltf_file.h"
 
 #include "core/words.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Receives what load_assimp.cpp and fbx_source.cpp send from their worker.
+// Receives what level_worker.cpp and fbx_source.cpp send from their worker.
 #include "core/file.h"
 #include "core/image.h"
 #include "core/isolate.h"
@@ -17,8 +17,8 @@ namespace nook
 namespace
 {
 
-// For text formats Assimp allocates a small object per face and corner: up to 40 bytes per byte of the file, measured on OBJ with
-// polygons. The floor covers what a reader needs for any file.
+// A corner of an OBJ's face takes two bytes of the file, and most of a hundred while a mesh is sent. The floor covers what a reader
+// needs for any file.
 constexpr std::size_t kMemoryFloor = std::size_t{512} << 20U;
 constexpr std::size_t kMemoryPerByte = 64;
 
@@ -57,14 +57,7 @@ public:
 		}
 		for (uint64_t left = count(); left > 0; --left)
 		{
-			const std::string missing = m_from.text();
-			// If the named .mtl is missing, Assimp tries the level's name.
-			const bool tried =
-				!m_source.missing.empty() && missing == std::filesystem::path(m_path).replace_extension(".mtl").string();
-			if (!tried)
-			{
-				m_source.missing.push_back(missing);
-			}
+			m_source.missing.push_back(m_from.text());
 		}
 	}
 
@@ -106,7 +99,7 @@ private:
 			made.material.alpha = static_cast<double>(m_from.value<float>());
 			made.material.two_sided = m_from.value<int>() != 0;
 			Texture opacity = texture();
-			const Texture colour = texture();
+			const std::string colour = m_from.text();
 			if (!std::isfinite(made.material.alpha) || made.material.alpha < 0.0 || made.material.alpha > 1.0)
 			{
 				refuseInput(m_path + ": material '" + made.material.name + "'",
@@ -122,9 +115,9 @@ private:
 			{
 				made.material.alpha_mode = AlphaMode::blend;
 			}
-			if (!colour.name.empty() && !colour.name.starts_with("*"))
+			if (!colour.empty())
 			{
-				noteMissingFile(m_source, besideLevel(m_path, colour.name));
+				noteMissingFile(m_source, besideLevel(m_path, colour));
 			}
 		}
 	}

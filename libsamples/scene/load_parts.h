@@ -160,7 +160,7 @@ LevelSource readGltf(const std::string& path, const LoadSettings& settings, Leve
 // Any other format: reads in a worker; appends triangles to `level`, and materials and cameras to `source`.
 void readGeometry(const std::string& path, const LoadSettings& settings, LevelSource& source, Level& level);
 
-// Worker protocol (load_assimp.cpp, fbx_source.cpp): a path and FileSettings → what readGeometry() expects, in that order.
+// Worker protocol (level_worker.cpp, fbx_source.cpp): a path and FileSettings → what readGeometry() expects, in that order.
 inline constexpr const char* kLevelWorker = "nook_level_worker";
 inline constexpr const char* kReadLevel = "read level";
 

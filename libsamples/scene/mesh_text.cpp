@@ -2,14 +2,14 @@
 #include "scene/mesh_text.h"
 
 #include "core/decimal.h"
+#include "core/file.h"
 
 #include <array>
 #include <bit>
 #include <charconv>
 #include <cstdint>
-#include <iterator>
 #include <limits>
-#include <sstream>
+#include <span>
 
 namespace nook
 {
@@ -34,61 +34,35 @@ std::string_view notFinite(std::string_view unsigned_word)
 	return microsoft || word == "nan" || (word.starts_with("nan(") && word.ends_with(")")) ? "nan" : "";
 }
 
-std::size_t digitsAt(std::string_view word, std::size_t at)
+bool isBlank(char c)
 {
-	return std::min(word.find_first_not_of("0123456789", at), word.size()) - std::min(at, word.size());
+	return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
 } // namespace
 
-bool isNumberText(std::string_view word)
-{
-	word = withoutSign(word);
-	const std::size_t whole = digitsAt(word, 0);
-	std::size_t at = whole;
-	std::size_t broken = 0;
-	if (at < word.size() && word[at] == '.')
-	{
-		broken = digitsAt(word, at + 1);
-		at += 1 + broken;
-	}
-	if (whole + broken > 0 && at < word.size() && (word[at] == 'e' || word[at] == 'E'))
-	{
-		const bool has_sign = at + 1 < word.size() && (word[at + 1] == '-' || word[at + 1] == '+');
-		const std::size_t digits = digitsAt(word, at + (has_sign ? 2 : 1));
-		at += digits > 0 ? (has_sign ? 2 : 1) + digits : 0;
-	}
-	return (whole + broken > 0 && at == word.size()) || !notFinite(word).empty();
-}
-
-std::string plainNumber(std::string_view word)
-{
-	const std::string_view rest = withoutSign(word);
-	const std::string sign(word.starts_with('-') ? "-" : "");
-	if (const std::string_view odd = notFinite(rest); !odd.empty())
-	{
-		return sign + std::string(odd);
-	}
-	return rest.starts_with('.') ? sign + "0" + std::string(rest) : std::string(word);
-}
-
-double numberOf(std::string_view word)
+std::optional<double> numberOf(std::string_view word)
 {
 	const double sign = word.starts_with('-') ? -1.0 : 1.0;
 	const std::string_view rest = withoutSign(word);
-	if (const std::string_view odd = notFinite(rest); !odd.empty())
-	{
-		return odd == "inf" ? sign * std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
-	}
 	double value = 0.0;
-	if (readDecimal(rest.data(), rest.data() + rest.size(), value).ec == std::errc::result_out_of_range)
+	const auto [end, wrong] = readDecimal(rest.data(), rest.data() + rest.size(), value);
+	const bool whole = end == rest.data() + rest.size() && rest.find_first_of("0123456789.") == 0;
+	if (whole && wrong == std::errc::result_out_of_range)
 	{
 		const std::size_t exponent = rest.find_first_of("eE");
 		const bool small = exponent == std::string_view::npos ? rest.find_first_not_of('0') == rest.find('.')
 															  : rest.substr(exponent + 1).starts_with('-');
-		value = small ? 0.0 : std::numeric_limits<double>::infinity();
+		return small ? 0.0 : sign * std::numeric_limits<double>::infinity();
 	}
-	return sign * value;
+	if (whole && wrong == std::errc{})
+	{
+		return sign * value;
+	}
+	const std::string_view odd = notFinite(rest);
+	return odd == "inf"   ? std::optional(sign * std::numeric_limits<double>::infinity())
+		   : odd == "nan" ? std::optional(std::numeric_limits<double>::quiet_NaN())
+						  : std::nullopt;
 }
 
 std::string textFrom(const std::vector<std::string_view>& words, std::size_t first)
@@ -113,17 +87,28 @@ std::optional<int> wholeOf(std::string_view word)
 
 void splitWords(std::string_view line, std::vector<std::string_view>& words)
 {
-	constexpr std::string_view kBlanks = " \t\r\n\v\f";
 	words.clear();
-	for (std::size_t at = line.find_first_not_of(kBlanks); at != std::string_view::npos;)
+	for (std::size_t at = 0; at < line.size();)
 	{
-		const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
-		words.push_back(line.substr(at, end - at));
-		at = line.find_first_not_of(kBlanks, end);
+		const std::size_t begin = at;
+		while (at < line.size() && !isBlank(line[at]))
+		{
+			++at;
+		}
+		if (at > begin)
+		{
+			words.push_back(line.substr(begin, at - begin));
+		}
+		++at;
 	}
 }
 
-// This work is based on: Greg Turk, "The PLY Polygon File Format", 1994.
+std::string readMeshText(const std::string& path)
+{
+	std::string bytes = readFile(path);
+	bytes.erase(0, bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+	return bytes;
+}
 
 namespace
 {
@@ -134,7 +119,8 @@ struct Property
 	std::size_t count_bytes = 0; // size of a list's length; 0: not a list
 	bool whole = false;          // values are integers
 	bool has_sign = false;
-	int axis = -1; // of a position
+	std::size_t slot = SIZE_MAX; // of a vertex's number in kSlots
+	bool indices = false;        // a list of vertices
 };
 
 struct Element
@@ -142,37 +128,43 @@ struct Element
 	std::string name;
 	uint64_t count = 0;
 	std::vector<Property> properties;
+
+	bool has(std::size_t first_slot, std::size_t last_slot) const
+	{
+		return std::any_of(properties.begin(), properties.end(),
+						   [&](const Property& p) { return p.slot >= first_slot && p.slot <= last_slot; });
+	}
 };
 
 struct Type
 {
-	std::string_view name;
+	std::string_view names;
 	std::size_t bytes;
 	bool whole;
 };
-constexpr std::array<Type, 16> kTypes{{{"char", 1, true},
-									   {"uchar", 1, true},
-									   {"short", 2, true},
-									   {"ushort", 2, true},
-									   {"int", 4, true},
-									   {"uint", 4, true},
-									   {"float", 4, false},
-									   {"double", 8, false},
-									   {"int8", 1, true},
-									   {"uint8", 1, true},
-									   {"int16", 2, true},
-									   {"uint16", 2, true},
-									   {"int32", 4, true},
-									   {"uint32", 4, true},
-									   {"float32", 4, false},
-									   {"float64", 8, false}}};
+constexpr std::array<Type, 8> kTypes{{{"char int8", 1, true},
+									  {"uchar uint8", 1, true},
+									  {"short int16", 2, true},
+									  {"ushort uint16", 2, true},
+									  {"int int32", 4, true},
+									  {"uint uint32", 4, true},
+									  {"float float32", 4, false},
+									  {"double float64", 8, false}}};
 constexpr std::array<std::string_view, 3> kFormats{"ascii", "binary_little_endian", "binary_big_endian"};
+
+// Names of the numbers of a vertex: position, normal, texture coordinates.
+constexpr std::array<std::string_view, 8> kSlots{"x", "y", "z", "nx", "ny", "nz", "u s tx texture_u", "v t ty texture_v"};
+
+bool hasWord(std::string_view words, std::string_view word)
+{
+	return (" " + std::string(words) + " ").find(" " + std::string(word) + " ") != std::string::npos;
+}
 
 // Digits with an optional sign.
 bool isWholeText(std::string_view word)
 {
 	const std::string_view digits = withoutSign(word);
-	return !digits.empty() && digitsAt(digits, 0) == digits.size();
+	return !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
 class PlyReader
@@ -180,8 +172,40 @@ class PlyReader
 public:
 	PlyReader(const std::string& bytes, const std::string& path) : m_bytes(bytes), m_path(path) {}
 
-	// Throws if the file is truncated.
-	void run()
+	MeshFile run()
+	{
+		MtlMaterial& material = m_file.materials.list[m_file.materials.number("")];
+		material.two_sided = true; // the format does not define the winding
+		header(material);
+		m_file.meshes.emplace_back();
+		for (const Element& element : m_elements)
+		{
+			if (element.count > 0 && element.properties.empty())
+			{
+				fail("elements '" + element.name + "' without properties", "what they are made of");
+			}
+			for (uint64_t i = 0; i < element.count; ++i)
+			{
+				m_list.clear();
+				if (!std::all_of(element.properties.begin(), element.properties.end(),
+								 [&](const Property& property) { return read(property); }))
+				{
+					refuseInput(m_path + ": " + element.name + " " + std::to_string(i), "the end of the file or no list",
+								std::to_string(element.count) + " whole ones");
+				}
+				take(element);
+			}
+		}
+		return std::move(m_file);
+	}
+
+private:
+	[[noreturn]] void fail(const std::string& found, const std::string& expected) const
+	{
+		refuseInput(m_path + ": header, line " + std::to_string(m_line), found, expected);
+	}
+
+	void header(MtlMaterial& material)
 	{
 		if (nextLine() != "ply")
 		{
@@ -189,61 +213,12 @@ public:
 		}
 		for (std::string line = nextLine(); line != "end_header"; line = nextLine())
 		{
-			take(line);
+			takeHeader(line, material);
 		}
 		if (!m_has_format)
 		{
 			fail("no format", "the line that says it");
 		}
-		m_data = m_at;
-		uint64_t faces = 0;
-		for (const Element& element : m_elements)
-		{
-			if (element.count > 0 && element.properties.empty())
-			{
-				fail("elements '" + element.name + "' without properties", "what they are made of");
-			}
-			if (element.count > 0 && element.name == "tristrips")
-			{
-				// Assimp 5.2.5 silently makes one triangle of a strip.
-				refuseInput(m_path, "triangle strips", "faces", ExitCode::unsupported);
-			}
-			const bool placed = element.name == "vertex" && std::count_if(element.properties.begin(), element.properties.end(),
-																		  [](const Property& p) { return p.axis >= 0; }) == 3;
-			for (uint64_t i = 0; i < element.count; ++i)
-			{
-				if (!skip(element))
-				{
-					refuseInput(m_path + ": " + element.name + " " + std::to_string(i), "the end of the file or no list",
-								std::to_string(element.count) + " whole ones");
-				}
-				if (placed)
-				{
-					positions.add(m_position);
-				}
-			}
-			faces += element.name == "face" ? element.count : 0;
-		}
-		if (faces == 0)
-		{
-			refuseInput(m_path, "no triangle", "a surface");
-		}
-	}
-
-	// Start of the data if their first byte is 10 and the header's last 10 is not preceded by 13; else 0. Assimp takes that byte
-	// for a second end of line and misreads everything after it.
-	std::size_t lostByte() const
-	{
-		constexpr std::string_view kEnd = "end_header\n\n";
-		return m_data > kEnd.size() && m_bytes.compare(m_data - kEnd.size() + 1, kEnd.size(), kEnd) == 0 ? m_data : 0;
-	}
-
-	ExactPositions positions;
-
-private:
-	[[noreturn]] void fail(const std::string& found, const std::string& expected) const
-	{
-		refuseInput(m_path + ": header, line " + std::to_string(m_line), found, expected);
 	}
 
 	// Accepts any line end.
@@ -260,9 +235,10 @@ private:
 		return line;
 	}
 
-	const Type& typeOf(const std::string& type) const
+	const Type& typeOf(std::string_view type) const
 	{
-		const auto* const known = std::find_if(kTypes.begin(), kTypes.end(), [&](const Type& one) { return one.name == type; });
+		const auto* const known =
+			std::find_if(kTypes.begin(), kTypes.end(), [&](const Type& one) { return hasWord(one.names, type); });
 		if (known == kTypes.end())
 		{
 			fail("an unknown type of number", "char, uchar, short, ushort, int, uint, float or double");
@@ -270,7 +246,7 @@ private:
 		return *known;
 	}
 
-	void takeFormat(const std::vector<std::string>& words)
+	void takeFormat(const std::vector<std::string_view>& words)
 	{
 		const bool known = words.size() == 3 && std::find(kFormats.begin(), kFormats.end(), words[1]) != kFormats.end();
 		if (m_has_format || !known || words[2] != "1.0")
@@ -283,12 +259,13 @@ private:
 		m_big_endian = words[1] == kFormats[2];
 	}
 
-	void take(const std::string& line)
+	void takeHeader(const std::string& line, MtlMaterial& material)
 	{
-		std::istringstream stream(line);
-		const std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
+		std::vector<std::string_view> words;
+		splitWords(line, words);
 		if (words.empty() || words[0] == "comment" || words[0] == "obj_info")
 		{
+			material.colour = words.size() > 2 && words[1] == "TextureFile" ? textFrom(words, 2) : material.colour;
 			return;
 		}
 		if (words[0] == "format")
@@ -312,13 +289,17 @@ private:
 			const Type& type = typeOf(words[words.size() - 2]);
 			property.bytes = type.bytes;
 			property.whole = type.whole;
-			property.has_sign = !type.name.starts_with('u');
-			const std::size_t axis = words.back().size() == 1 && words.size() == 3 ? std::string_view("xyz").find(words.back()) : 3;
-			property.axis = axis < 3 ? static_cast<int>(axis) : -1;
+			property.has_sign = !words[words.size() - 2].starts_with('u');
+			const std::string_view name = words.back();
 			if (words.size() == 5)
 			{
 				property.count_bytes = typeOf(words[2]).bytes;
+				property.indices = name == "vertex_index" || name == "vertex_indices";
+				return;
 			}
+			const auto* const slot =
+				std::find_if(kSlots.begin(), kSlots.end(), [&](std::string_view names) { return hasWord(names, name); });
+			property.slot = m_elements.back().name == "vertex" ? static_cast<std::size_t>(slot - kSlots.begin()) : kSlots.size();
 		}
 		else
 		{
@@ -326,35 +307,98 @@ private:
 		}
 	}
 
-	// Skips one element; false if it is truncated.
-	bool skip(const Element& element)
-	{
-		return std::all_of(element.properties.begin(), element.properties.end(),
-						   [&](const Property& property) { return m_binary ? skipBinary(property) : skipText(property); });
-	}
-
-	bool skipBinary(const Property& property)
+	// Reads a number or a list; false if it is truncated.
+	bool read(const Property& property)
 	{
 		uint64_t values = 1;
-		if (property.count_bytes > 0)
-		{
-			if (m_bytes.size() - m_at < property.count_bytes)
-			{
-				return false;
-			}
-			values = bitsOf(property.count_bytes);
-			m_at += property.count_bytes;
-		}
-		if (values > (m_bytes.size() - m_at) / property.bytes) // negative lengths become very large here
+		if ((property.count_bytes > 0 && !count(property.count_bytes, values)) ||
+			(m_binary && values > (m_bytes.size() - m_at) / property.bytes)) // negative lengths become very large here
 		{
 			return false;
 		}
-		if (property.axis >= 0)
+		for (; values > 0; --values)
 		{
-			m_position[property.axis] = valueAt(property);
+			double value = 0.0;
+			if (m_binary)
+			{
+				value = valueAt(property);
+				m_at += property.bytes;
+			}
+			else if (!word(property, value))
+			{
+				return false;
+			}
+			if (property.indices)
+			{
+				m_list.push_back(value >= 0.0 && value < kNone ? static_cast<uint32_t>(value) : kNone);
+			}
+			else if (property.slot < kSlots.size())
+			{
+				m_numbers[property.slot] = value;
+			}
 		}
-		m_at += static_cast<std::size_t>(values) * property.bytes;
 		return true;
+	}
+
+	bool count(std::size_t bytes, uint64_t& values)
+	{
+		if (!m_binary)
+		{
+			const std::optional<uint64_t> number = nook::numberFrom<uint64_t>(nextWord());
+			values = number.value_or(0);
+			return number.has_value();
+		}
+		const bool whole = m_bytes.size() - m_at >= bytes;
+		values = whole ? bitsOf(bytes) : 0;
+		m_at += whole ? bytes : 0;
+		return whole;
+	}
+
+	// A number of a text file; false at the end.
+	bool word(const Property& property, double& value)
+	{
+		const std::string_view text = nextWord();
+		const std::optional<double> number = !property.whole || isWholeText(text) ? numberOf(text) : std::nullopt;
+		if (!text.empty() && !number)
+		{
+			refuseInput(m_path + ": byte " + std::to_string(m_at - text.size()), quoted(text),
+						std::string("a ") + (property.whole ? "whole " : "") + "number");
+		}
+		value = number.value_or(0.0);
+		return number.has_value();
+	}
+
+	// Adds the current vertex, face or strips to the mesh.
+	void take(const Element& element)
+	{
+		FileMesh& mesh = m_file.meshes.front();
+		if (element.has(0, 2))
+		{
+			mesh.positions.emplace_back(m_numbers[0], m_numbers[1], m_numbers[2]);
+		}
+		if (element.has(3, 5))
+		{
+			mesh.normals.emplace_back(m_numbers[3], m_numbers[4], m_numbers[5]);
+		}
+		if (element.has(6, 7))
+		{
+			mesh.uvs.emplace_back(m_numbers[6], m_numbers[7]);
+		}
+		if (element.name == "face")
+		{
+			mesh.corners.insert(mesh.corners.end(), m_list.begin(), m_list.end());
+			mesh.ends.push_back(static_cast<uint32_t>(mesh.corners.size()));
+		}
+		for (std::size_t i = 0, begin = 0; element.name == "tristrips" && i < m_list.size(); ++i)
+		{
+			begin = m_list[i] == kNone ? i + 1 : begin; // -1 starts the next strip
+			if (i >= begin + 2)
+			{
+				const std::size_t turned = (i - begin) % 2;
+				mesh.corners.insert(mesh.corners.end(), {m_list[i - 2 + turned], m_list[i - 1 - turned], m_list[i]});
+				mesh.ends.push_back(static_cast<uint32_t>(mesh.corners.size()));
+			}
+		}
 	}
 
 	// The current number in a binary file: its bits, and its value.
@@ -380,62 +424,28 @@ private:
 		return static_cast<double>(property.has_sign ? static_cast<int64_t>((bits ^ sign) - sign) : static_cast<int64_t>(bits));
 	}
 
-	bool skipText(const Property& property)
-	{
-		uint64_t values = 1;
-		if (property.count_bytes > 0)
-		{
-			const std::string_view word = nextWord();
-			const auto [stop, wrong] = std::from_chars(word.data(), word.data() + word.size(), values);
-			if (wrong != std::errc{} || stop != word.data() + word.size())
-			{
-				return false;
-			}
-		}
-		for (; values > 0; --values)
-		{
-			const std::string_view word = nextWord();
-			if (word.empty())
-			{
-				return false;
-			}
-			if (property.whole ? !isWholeText(word) : !isNumberText(word))
-			{
-				throw Error(ExitCode::invalid_input, m_path + ": byte " + std::to_string(m_at - word.size()) + ": found " +
-														 quoted(word) + ", expected a " + (property.whole ? "whole " : "") +
-														 "number");
-			}
-			if (property.axis >= 0)
-			{
-				m_position[property.axis] = numberOf(word);
-			}
-		}
-		return true;
-	}
-
 	std::string_view nextWord()
 	{
-		const auto blank = [&]
-		{
-			return m_bytes[m_at] == ' ' || (m_bytes[m_at] >= '\t' && m_bytes[m_at] <= '\r');
-		};
-		while (m_at < m_bytes.size() && blank())
+		while (m_at < m_bytes.size() && isBlank(m_bytes[m_at]))
 		{
 			++m_at;
 		}
 		const std::size_t begin = m_at;
-		while (m_at < m_bytes.size() && !blank())
+		while (m_at < m_bytes.size() && !isBlank(m_bytes[m_at]))
 		{
 			++m_at;
 		}
 		return std::string_view(m_bytes).substr(begin, m_at - begin);
 	}
 
+	static constexpr uint32_t kNone = ~0U;
+
 	const std::string& m_bytes;
 	const std::string& m_path;
+	MeshFile m_file;
 	std::vector<Element> m_elements;
-	glm::dvec3 m_position{0.0}; // of the current vertex
-	std::size_t m_data = 0;     // start of the data
+	std::array<double, kSlots.size()> m_numbers{}; // of the current element
+	std::vector<uint32_t> m_list;                  // of its vertices
 	std::size_t m_at = 0;
 	std::size_t m_line = 0;
 	bool m_has_format = false;
@@ -445,23 +455,13 @@ private:
 
 } // namespace
 
-std::optional<std::string> repairedPly(const std::string& bytes, const std::string& path, std::vector<glm::dvec3>& exact)
+MeshFile readPly(const std::string& bytes, const std::string& path)
 {
-	PlyReader reader(bytes, path);
-	reader.run();
-	exact = reader.positions.take();
-	const std::size_t lost = reader.lostByte();
-	return lost == 0 ? std::nullopt : std::optional(std::string(bytes).insert(lost - 1, 1, '\r'));
+	return PlyReader(bytes, path).run();
 }
-
-// A binary STL file is recognisable only by its length: 80 bytes, a count, 50 bytes per triangle. Assimp takes any other length for
-// text, and then finds nothing. In text, it accepts partial numbers, a comma as decimal point, the first three corners of a facet,
-// only lower case, and treats words of a solid's name as keywords.
 
 namespace
 {
-
-using Words = std::vector<std::string_view>;
 
 constexpr std::size_t kHead = 84; // bytes before the first triangle
 
@@ -471,94 +471,115 @@ uint64_t bytesNeeded(const std::string& bytes)
 	return kHead + 50 * littleEndian(bytes, 80, 4);
 }
 
-class TextReader
+void addFacet(FileMesh& mesh, glm::vec3 normal, std::span<const glm::dvec3> corners)
+{
+	for (const glm::dvec3& corner : corners)
+	{
+		mesh.corners.push_back(static_cast<uint32_t>(mesh.positions.size()));
+		mesh.positions.push_back(corner);
+		mesh.normals.push_back(normal);
+	}
+	mesh.ends.push_back(static_cast<uint32_t>(mesh.corners.size()));
+}
+
+void readFacets(const std::string& bytes, FileMesh& mesh)
+{
+	for (std::size_t at = kHead; at < bytes.size(); at += 50)
+	{
+		std::array<glm::vec3, 4> values; // normal, corners
+		for (std::size_t i = 0; i < 12; ++i)
+		{
+			values[i / 3][static_cast<int>(i % 3)] =
+				std::bit_cast<float>(static_cast<uint32_t>(littleEndian(bytes, at + 4 * i, 4)));
+		}
+		addFacet(mesh, values[0], std::array<glm::dvec3, 3>{values[1], values[2], values[3]});
+	}
+}
+
+class StlText
 {
 public:
-	explicit TextReader(std::vector<std::string>& solids) : m_solids(solids) {}
+	explicit StlText(std::vector<FileMesh>& meshes) : m_meshes(meshes) {}
 
-	// Returns the text that replaces a line, or none to keep it.
-	std::optional<std::string> take(std::string_view line, const TextPlace& place)
+	void take(std::string_view line, const TextPlace& place)
 	{
 		splitWords(line, m_words);
-		if (m_words.empty())
+		const std::string keyword = m_words.empty() ? "" : lowered(m_words[0]);
+		if (keyword == "solid")
 		{
-			return std::nullopt;
+			end(place);
+			m_meshes.emplace_back().name = m_words.size() > 1 ? textFrom(m_words, 1) : "";
 		}
-		m_keyword = lowered(m_words[0]);
-		if (m_keyword == "solid")
+		else if (keyword == "vertex")
 		{
-			m_solids.push_back(m_words.size() > 1 ? textFrom(m_words, 1) : "");
-			return "solid";
+			m_corners.push_back(numbers(1, place));
 		}
-		if (m_keyword == "vertex")
+		else if (keyword == "facet")
 		{
-			m_corners += 1;
-			return numbers(1, "vertex", place);
+			end(place);
+			m_normal = numbers(2, place);
 		}
-		if (m_keyword == "facet")
+		else if (keyword == "endfacet" && m_corners.size() != 3)
 		{
-			m_corners = 0;
-			if (m_words.size() < 2 || lowered(m_words[1]) != "normal")
-			{
-				return "facet"; // truncated, or Assimp rejects its corners
-			}
-			return numbers(2, "facet normal", place);
+			fail(place);
 		}
-		if (m_keyword == "endfacet" && m_corners != 3)
+		else if (keyword == "endfacet" || keyword == "endsolid")
 		{
-			place.fail(std::to_string(m_corners) + " corners of a facet", "3");
+			end(place);
 		}
-		constexpr std::array<std::string_view, 3> kOthers{"outer", "endloop", "endfacet"};
-		const bool known = std::find(kOthers.begin(), kOthers.end(), m_words[0]) != kOthers.end();
-		return known ? std::nullopt : std::optional(m_keyword == "endsolid" ? m_keyword : std::string());
 	}
 
-	ExactPositions positions;
+	// Ends a facet, if one is open.
+	void end(const TextPlace& place)
+	{
+		if (m_corners.empty())
+		{
+			return;
+		}
+		if (m_corners.size() != 3)
+		{
+			fail(place);
+		}
+		if (m_meshes.empty())
+		{
+			place.fail("a facet", "\"solid\" before it");
+		}
+		addFacet(m_meshes.back(), m_normal, m_corners);
+		m_corners.clear();
+	}
 
 private:
-	std::optional<std::string> numbers(std::size_t from, const std::string& keywords, const TextPlace& place)
+	[[noreturn]] void fail(const TextPlace& place) const
+	{
+		place.fail(std::to_string(m_corners.size()) + " corners of a facet", "3");
+	}
+
+	glm::dvec3 numbers(std::size_t from, const TextPlace& place) const
 	{
 		if (m_words.size() != from + 3)
 		{
-			place.fail(std::to_string(m_words.size() - from) + " numbers", "x y z");
+			place.fail(std::to_string(m_words.size() - std::min(m_words.size(), from)) + " numbers", "x y z");
 		}
-		bool changed = m_keyword != m_words[0] || (from == 2 && m_words[1] != "normal");
-		std::string plain = keywords;
-		glm::dvec3 values;
-		for (std::size_t i = 0; i < 3; ++i)
-		{
-			const std::string_view word = m_words[from + i];
-			if (!isNumberText(word))
-			{
-				place.fail(quoted(word), "a number");
-			}
-			const std::string number = plainNumber(word);
-			changed = changed || number != word;
-			plain += " " + number;
-			values[static_cast<int>(i)] = numberOf(word);
-		}
-		if (from == 1)
-		{
-			positions.add(values);
-		}
-		return changed ? std::optional(plain) : std::nullopt;
+		return {place.number(m_words[from]), place.number(m_words[from + 1]), place.number(m_words[from + 2])};
 	}
 
-	std::vector<std::string>& m_solids;
-	Words m_words;
-	std::string m_keyword; // in lower case
-	int m_corners = 0;     // of the current facet
+	std::vector<FileMesh>& m_meshes;
+	std::vector<std::string_view> m_words;
+	glm::dvec3 m_normal{0.0};
+	std::vector<glm::dvec3> m_corners; // of the current facet
 };
 
 } // namespace
 
-std::optional<std::string> repairedStl(const std::string& bytes, const std::string& path, std::vector<glm::dvec3>& exact,
-									   std::vector<std::string>& solids)
+MeshFile readStl(const std::string& bytes, const std::string& path)
 {
+	MeshFile file;
+	file.materials.number(kNoMaterial);
 	const bool has_head = bytes.size() >= kHead;
 	if (has_head && bytes.size() == bytesNeeded(bytes))
 	{
-		return std::nullopt;
+		readFacets(bytes, file.meshes.emplace_back());
+		return file;
 	}
 	if (has_head && bytes.find('\0') < kHead) // not text; and every count below 2^24 contains a zero
 	{
@@ -567,11 +588,16 @@ std::optional<std::string> repairedStl(const std::string& bytes, const std::stri
 					std::to_string((needed - kHead) / 50) + " triangles in " + std::to_string(bytes.size()) + " bytes",
 					std::to_string(needed) + " bytes");
 	}
-	TextReader reader(solids);
-	std::optional<std::string> repaired =
-		repairedLines(bytes, path, false, [&](std::string_view line, const TextPlace& place) { return reader.take(line, place); });
-	exact = reader.positions.take();
-	return repaired;
+	StlText text(file.meshes);
+	std::size_t lines = 0;
+	forLines(bytes, path, false,
+			 [&](std::string_view line, const TextPlace& place)
+			 {
+				 text.take(line, place);
+				 lines = place.line;
+			 });
+	text.end({path, lines});
+	return file;
 }
 
 } // namespace nook

@@ -4,199 +4,239 @@
 #include "scene/mesh_text.h"
 
 #include <array>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
 
 namespace nook
 {
 namespace
 {
 
-using Words = std::vector<std::string_view>;
-
-std::string joined(const Words& words, const std::vector<std::string>& rest)
+class ObjReader
 {
-	std::string line(words[0]);
-	for (const std::string& word : rest)
+public:
+	ObjReader(const std::string& path, const LoadSettings& settings) : m_path(path), m_settings(settings)
 	{
-		line += " " + word;
+		m_file.materials.number(kNoMaterial);
+		m_file.meshes.emplace_back().name = "defaultobject";
 	}
-	return line;
-}
 
-// For v, vt and vn. A colour after a position is kept if it has three numbers and removed if it has four.
-std::optional<std::string> repairedNumbers(Words& words, const TextPlace& place)
-{
-	bool changed = false;
-	const auto comment = std::find_if(words.begin(), words.end(), [](std::string_view word) { return word.starts_with('#'); });
-	if (comment != words.end())
+	MeshFile run(const std::string& text)
 	{
-		words.erase(comment, words.end());
-		changed = true;
-	}
-	std::vector<std::string> numbers;
-	for (std::size_t i = 1; i < words.size(); ++i)
-	{
-		if (!isNumberText(words[i]))
+		const auto each = [&](const auto& take)
 		{
-			place.fail(quoted(words[i]), "a number");
-		}
-		numbers.push_back(plainNumber(words[i]));
-		changed = changed || numbers.back() != words[i];
+			forLines(text, m_path, true,
+					 [&](std::string_view line, const TextPlace& place)
+					 {
+						 splitWords(line, m_words);
+						 if (!m_words.empty())
+						 {
+							 take(m_words[0], place);
+						 }
+					 });
+		};
+		each([&](std::string_view keyword, const TextPlace& place) { takeNumbers(keyword, place); }); // faces may precede them
+		each([&](std::string_view keyword, const TextPlace& place) { takeElement(keyword, place); });
+		std::erase_if(m_file.meshes, [](const FileMesh& mesh) { return mesh.ends.empty(); });
+		return std::move(m_file);
 	}
-	const std::size_t count = numbers.size();
-	if (words[0] == "v" && count != 3 && count != 4 && count != 6 && count != 7)
-	{
-		place.fail(std::to_string(count) + " numbers", "x y z, a weight behind them or a colour");
-	}
-	if ((words[0] == "vn" && count != 3) || (words[0] == "vt" && (count < 1 || count > 3)))
-	{
-		place.fail(std::to_string(count) + " numbers", words[0] == "vn" ? "x y z" : "u, u v or u v w");
-	}
-	if (count == 7 || (words[0] == "vt" && count == 1))
-	{
-		numbers.resize(words[0] == "v" ? 3 : 2, "0");
-		changed = true;
-	}
-	return changed ? std::optional(joined(words, numbers)) : std::nullopt;
-}
 
-// "1", "1/2", "1//3" or "1/2/3", without signs and leading zeros.
-std::string plainCorner(std::string_view word, const TextPlace& place)
-{
-	std::string plain;
-	std::size_t parts = 0;
-	for (std::size_t begin = 0; begin <= word.size(); ++parts)
+private:
+	void takeNumbers(std::string_view keyword, const TextPlace& place)
 	{
-		const std::size_t end = std::min(word.find('/', begin), word.size());
-		const std::string_view part = word.substr(begin, end - begin);
-		const std::optional<int> index = wholeOf(part);
-		if (parts > 2 || (!index && (parts == 0 || !part.empty())))
+		if (keyword != "v" && keyword != "vt" && keyword != "vn")
 		{
-			place.fail(quoted(word), "an index, or two or three with / between them");
+			return;
 		}
-		plain += (parts > 0 ? "/" : "") + (index ? std::to_string(*index) : std::string());
-		begin = end + 1;
-	}
-	return plain.substr(0, plain.find_last_not_of('/') + 1);
-}
-
-// For f, l and p.
-std::optional<std::string> repairedCorners(const Words& words, const TextPlace& place)
-{
-	bool changed = false;
-	std::vector<std::string> corners;
-	for (std::size_t i = 1; i < words.size() && !words[i].starts_with('#'); ++i)
-	{
-		corners.push_back(plainCorner(words[i], place));
-		changed = changed || corners.back() != words[i];
-	}
-	changed = changed || corners.size() + 1 < words.size();
-	return changed ? std::optional(joined(words, corners)) : std::nullopt;
-}
-
-// Returns the text that replaces a line, or none to keep it.
-std::optional<std::string> repairedObjLine(std::string_view line, Words& words, const TextPlace& place)
-{
-	constexpr std::array<std::string_view, 6> kOthers{"g", "o", "s", "usemtl", "mtllib", "mg"};
-	const std::string_view keyword = words[0];
-	std::optional<std::string> repaired;
-	if (keyword == "v" || keyword == "vt" || keyword == "vn")
-	{
-		repaired = repairedNumbers(words, place);
-	}
-	else if (keyword == "usemtl" && line.size() > kMaxMaterialName)
-	{
-		return "usemtl " + (words.size() > 1 ? textFrom(words, 1).substr(0, kMaxMaterialName) : "");
-	}
-	else if (keyword == "f" || keyword == "l" || keyword == "p")
-	{
-		repaired = repairedCorners(words, place);
-	}
-	else if (std::find(kOthers.begin(), kOthers.end(), keyword) == kOthers.end())
-	{
-		return ""; // including curves and surfaces, which are not supported
-	}
-	const auto indent = static_cast<std::size_t>(keyword.data() - line.data());
-	return repaired || indent == 0 ? repaired : std::optional(std::string(line.substr(indent)));
-}
-
-// Joins lines continued by a final \ into `made`; a single line is returned unchanged.
-std::string_view onOneLine(std::string_view line, std::string& made)
-{
-	if (line.find_first_of("\r\n") == std::string_view::npos)
-	{
-		return line;
-	}
-	made = line;
-	for (std::size_t at = made.find_first_of("\r\n"); at != std::string::npos; at = made.find_first_of("\r\n", at))
-	{
-		made[at] = ' ';
-		made[at - 1] = made[at - 1] == '\\' ? ' ' : made[at - 1];
-	}
-	return made;
-}
-
-// x y z of a line's numbers, divided by the weight if there is one.
-glm::dvec3 pointOf(const Words& words, const TextPlace& place)
-{
-	std::array<double, 4> numbers{0.0, 0.0, 0.0, 1.0};
-	const bool has_weight = words.size() == 5;
-	for (std::size_t i = 0; i < (has_weight ? 4 : 3); ++i)
-	{
-		numbers[i] = numberOf(words[i + 1]);
-	}
-	if (numbers[3] == 0.0)
-	{
-		place.fail("a weight of 0", "another");
-	}
-	return glm::dvec3(numbers[0], numbers[1], numbers[2]) / numbers[3];
-}
-
-// Replaces each position with its number, for exactPosition().
-std::optional<std::string> numbered(const std::string& text, const std::string& path)
-{
-	uint32_t count = 0;
-	const auto replaced = [&](std::string_view line, const TextPlace& /*place*/) -> std::optional<std::string>
-	{
-		if (line.size() < 2 || line[0] != 'v' || line[1] == 't' || line[1] == 'n')
+		dropComment();
+		std::array<double, 8> numbers{};
+		const std::size_t count = m_words.size() - 1;
+		for (std::size_t i = 0; i < count; ++i)
 		{
-			return std::nullopt;
+			numbers[std::min(i, numbers.size() - 1)] = place.number(m_words[i + 1]);
 		}
-		const uint32_t number = count++;
-		return "v " + std::to_string(number & 0xffffU) + " " + std::to_string(number >> 16U) + " 0";
-	};
-	return repairedLines(text, path, true, replaced);
-}
+		const glm::dvec3 point(numbers[0], numbers[1], numbers[2]);
+		if (keyword == "vt" ? count < 1 || count > 3 : count != 3 && (keyword == "vn" || (count != 4 && count != 6 && count != 7)))
+		{
+			place.fail(std::to_string(count) + " numbers", keyword == "v"    ? "x y z, a weight behind them or a colour"
+														   : keyword == "vn" ? "x y z"
+																			 : "u, u v or u v w");
+		}
+		if (keyword == "vt")
+		{
+			m_uvs.emplace_back(point);
+		}
+		else if (keyword == "vn")
+		{
+			m_normals.emplace_back(point);
+		}
+		else if (count == 4 && numbers[3] == 0.0)
+		{
+			place.fail("a weight of 0", "another");
+		}
+		else
+		{
+			m_positions.push_back(count == 4 ? point / numbers[3] : point);
+		}
+	}
+
+	void dropComment()
+	{
+		const auto begins = [](std::string_view word)
+		{
+			return word.starts_with('#');
+		};
+		m_words.erase(std::find_if(m_words.begin(), m_words.end(), begins), m_words.end());
+	}
+
+	void takeElement(std::string_view keyword, const TextPlace& place)
+	{
+		const std::string name = m_words.size() > 1 ? textFrom(m_words, 1) : "";
+		if (keyword == "v" || keyword == "vt" || keyword == "vn")
+		{
+			m_before[keyword == "v" ? 0 : keyword == "vt" ? 1 : 2] += 1;
+		}
+		else if (keyword == "f" || keyword == "l" || keyword == "p")
+		{
+			addFaces(keyword, place);
+		}
+		else if (keyword == "g" || keyword == "o")
+		{
+			std::string& current = keyword == "g" ? m_group : m_object;
+			if (name != current)
+			{
+				start(name).name = name;
+				current = name;
+			}
+		}
+		else if (keyword == "usemtl" && !name.empty())
+		{
+			const uint32_t material = m_file.materials.number(name);
+			if (material != m_material)
+			{
+				m_material = material;
+				start(name);
+			}
+		}
+		else if (keyword == "mtllib" && !name.empty())
+		{
+			takeLibrary(name);
+		}
+		// Curves and surfaces are not supported.
+	}
+
+	// The mesh for the next faces; it has the name only if it is new.
+	FileMesh& start(const std::string& name)
+	{
+		if (!m_file.meshes.back().ends.empty())
+		{
+			m_file.meshes.emplace_back().name = name;
+		}
+		m_file.meshes.back().material = m_material;
+		return m_file.meshes.back();
+	}
+
+	void addFaces(std::string_view keyword, const TextPlace& place)
+	{
+		dropComment();
+		FileMesh& mesh = m_file.meshes.back();
+		const auto first = static_cast<uint32_t>(mesh.positions.size());
+		for (std::size_t i = 1; i < m_words.size(); ++i)
+		{
+			addCorner(m_words[i], place, mesh);
+		}
+		const auto count = static_cast<uint32_t>(m_words.size() - 1);
+		const uint32_t size = keyword == "f" ? count : keyword == "l" ? 2 : 1;
+		for (uint32_t i = 0; i < count && i + size <= count; i += keyword == "f" ? count : 1)
+		{
+			for (uint32_t corner = 0; corner < size; ++corner)
+			{
+				mesh.corners.push_back(first + i + corner);
+			}
+			mesh.ends.push_back(static_cast<uint32_t>(mesh.corners.size()));
+		}
+	}
+
+	// "1", "1/2", "1//3" or "1/2/3". Coordinates and normals that the file lacks count as missing.
+	void addCorner(std::string_view word, const TextPlace& place, FileMesh& mesh) const
+	{
+		constexpr std::size_t kMissing = SIZE_MAX;
+		std::array<std::size_t, 3> indices{kMissing, kMissing, kMissing};
+		std::size_t parts = 0;
+		for (std::size_t begin = 0; begin <= word.size(); ++parts)
+		{
+			const std::size_t end = std::min(word.find('/', begin), word.size());
+			const std::string_view part = word.substr(begin, end - begin);
+			const std::optional<int> index = wholeOf(part);
+			if (parts > 2 || index == 0 || (!index && (parts == 0 || !part.empty())))
+			{
+				place.fail(quoted(word), "an index, or two or three with / between them");
+			}
+			if (index) // a negative one counts back from here
+			{
+				indices[parts] = *index > 0 ? static_cast<std::size_t>(*index) - 1
+											: m_before[parts] - static_cast<std::size_t>(-int64_t{*index});
+			}
+			begin = end + 1;
+		}
+		if (indices[0] >= m_positions.size())
+		{
+			place.fail(quoted(word), "one of " + std::to_string(m_positions.size()) + " vertices");
+		}
+		if (indices[1] < m_uvs.size())
+		{
+			mesh.uvs.resize(mesh.positions.size(), glm::vec2(0.0F));
+			mesh.uvs.push_back(m_uvs[indices[1]]);
+		}
+		if (indices[2] < m_normals.size())
+		{
+			mesh.normals.resize(mesh.positions.size(), glm::vec3(0.0F));
+			mesh.normals.push_back(m_normals[indices[2]]);
+		}
+		mesh.positions.push_back(m_positions[indices[0]]);
+	}
+
+	// Without this MTL file, takes one that has the level's name.
+	void takeLibrary(const std::string& name)
+	{
+		const auto is_file = [](const std::string& path)
+		{
+			std::error_code failed;
+			return std::filesystem::is_regular_file(path, failed);
+		};
+		std::string path = besideLevel(m_path, name);
+		if (!is_file(path))
+		{
+			addFile(m_file.missing, path);
+			path = std::filesystem::path(m_path).replace_extension(".mtl").string();
+		}
+		if (is_file(path) && std::find(m_file.files.begin(), m_file.files.end(), path) == m_file.files.end())
+		{
+			checkInside(m_path, "mtllib", path, m_settings);
+			m_file.files.push_back(path);
+			readMtl(readMeshText(path), path, m_file.materials);
+		}
+	}
+
+	const std::string& m_path;
+	const LoadSettings& m_settings;
+	MeshFile m_file;
+	std::vector<std::string_view> m_words; // of the line
+	std::vector<glm::dvec3> m_positions;
+	std::vector<glm::vec2> m_uvs;
+	std::vector<glm::vec3> m_normals;
+	std::array<std::size_t, 3> m_before{}; // how many of these precede the line
+	std::string m_group;
+	std::string m_object;
+	uint32_t m_material = 0;
+};
 
 } // namespace
 
-std::optional<std::string> repairedObj(const std::string& text, const std::string& path, std::vector<glm::dvec3>& exact)
+MeshFile readObj(const std::string& text, const std::string& path, const LoadSettings& settings)
 {
-	Words words;
-	std::string one;
-	ExactPositions positions;
-	const auto repair = [&](std::string_view line, const TextPlace& place) -> std::optional<std::string>
-	{
-		line = onOneLine(line, one);
-		splitWords(line, words);
-		if (words.empty() || words[0].starts_with('#'))
-		{
-			return std::nullopt;
-		}
-		std::optional<std::string> repaired = repairedObjLine(line, words, place);
-		if (words[0] == "v")
-		{
-			positions.add(pointOf(words, place));
-		}
-		return repaired;
-	};
-	std::optional<std::string> repaired = repairedLines(text, path, true, repair);
-	exact = positions.take();
-	return exact.empty() ? repaired : numbered(repaired ? *repaired : text, path);
-}
-
-glm::dvec3 exactPosition(const std::vector<glm::dvec3>& exact, glm::vec3 number)
-{
-	return exact.at(static_cast<std::size_t>(number.x) + (static_cast<std::size_t>(number.y) << 16U));
+	return ObjReader(path, settings).run(text);
 }
 
 // This work is based on: Diane Ramey, Linda Rose, Lisa Tyerman, "MTL material format (Lightwave, OBJ)", Alias|Wavefront 1995.
@@ -283,7 +323,7 @@ private:
 		std::array<double, 3> unused{};
 		std::array<double, 3>& to = m_option == "-s" ? m_scale : m_option == "-o" ? m_offset : unused;
 		to[0] = number();
-		for (std::size_t i = 1; i < to.size() && m_at < m_words.size() && isNumberText(m_words[m_at]); ++i)
+		for (std::size_t i = 1; i < to.size() && m_at < m_words.size() && numberOf(m_words[m_at]); ++i)
 		{
 			to[i] = number();
 		}
@@ -306,7 +346,7 @@ private:
 	double number()
 	{
 		const std::string_view text = word("a number");
-		const double value = isNumberText(text) ? numberOf(text) : NAN;
+		const double value = numberOf(text).value_or(NAN);
 		if (!(std::fabs(value) <= kMaxNumber))
 		{
 			m_place.fail(nook::quoted(text), "a number behind " + m_option);
@@ -352,11 +392,11 @@ private:
 float shareOf(const std::vector<std::string_view>& words, const TextPlace& place)
 {
 	const std::size_t at = words.size() > 1 && words[1] == "-halo" ? 2 : 1; // ignores how -halo depends on the view
-	if (at >= words.size() || !isNumberText(words[at]))
+	if (at >= words.size())
 	{
-		place.fail(at < words.size() ? quoted(words[at]) : "nothing", "a number");
+		place.fail("nothing", "a number");
 	}
-	const double value = numberOf(words[at]);
+	const double value = place.number(words[at]);
 	if (!(value >= 0.0 && value <= 1.0))
 	{
 		place.fail(quoted(words[at]), "0 to 1 behind " + std::string(words[0]));
@@ -381,29 +421,20 @@ std::string colourOf(const std::vector<std::string_view>& words, const TextPlace
 
 } // namespace
 
-std::string readMtl(const std::string& text, const std::string& path, MtlMaterials& materials)
+void readMtl(const std::string& text, const std::string& path, MtlMaterials& materials)
 {
 	MtlMaterial before; // for lines before the first name
 	MtlMaterial* material = &before;
 	std::vector<std::string_view> words;
-	const auto take = [&](std::string_view line, const TextPlace& place) -> std::optional<std::string>
+	const auto take = [&](std::string_view line, const TextPlace& place)
 	{
 		splitWords(line, words);
 		const std::string keyword = words.empty() ? "" : lowered(words[0]);
 		if (keyword == "newmtl")
 		{
-			const std::string name = words.size() > 1 ? textFrom(words, 1) : "DefaultMaterial"; // Assimp's default name
-			const std::string cut = name.substr(0, kMaxMaterialName);
-			material = &materials[cut];
-			if (!material->name.empty() && material->name != name)
-			{
-				place.fail("a name that begins as another one",
-						   "names that differ in their first " + std::to_string(kMaxMaterialName) + " bytes");
-			}
-			material->name = name;
-			return "newmtl " + cut;
+			material = &materials.list[materials.number(words.size() > 1 ? textFrom(words, 1) : kNoMaterial)];
 		}
-		if (keyword == "d" || keyword == "tr")
+		else if (keyword == "d" || keyword == "tr")
 		{
 			(keyword == "d" ? material->d : material->tr) = shareOf(words, place);
 		}
@@ -415,9 +446,8 @@ std::string readMtl(const std::string& text, const std::string& path, MtlMateria
 		{
 			material->colour = colourOf(words, place);
 		}
-		return "";
 	};
-	return repairedLines(text, path, false, take).value_or("");
+	forLines(text, path, false, take);
 }
 
 float opacityOf(const MtlMaterial& material, TrMeaning meaning, bool& inverted)

@@ -177,63 +177,74 @@ bool triangulate(std::span<const glm::dvec3> corners, std::vector<glm::uvec3>& t
 	return simple;
 }
 
-void FaceCutter::start(std::string name, std::span<const glm::dvec3> positions, bool mirrored)
+void FaceCutter::send(const FileMesh& mesh, const std::vector<std::string>& path, bool mirrored, ValueWriter& to)
 {
-	m_name = std::move(name);
-	m_positions = positions;
-	m_mirrored = mirrored;
-	triangles.clear();
+	m_triangles.clear();
+	std::size_t begin = 0;
+	for (const uint32_t end : mesh.ends)
+	{
+		add({mesh.corners.data() + begin, end - begin}, mesh);
+		begin = end;
+	}
+	for (std::size_t i = 0; i < m_triangles.size() && mirrored; ++i)
+	{
+		std::swap(m_triangles[i].y, m_triangles[i].z);
+	}
+	to.value(MeshHead{mesh.material, false});
+	to.text(mesh.name);
+	to.value(static_cast<uint32_t>(path.size()));
+	for (const std::string& name : path)
+	{
+		to.text(name);
+	}
+	to.values(mesh.positions);
+	to.values(mesh.normals);
+	to.values(mesh.uvs);
+	to.values(m_triangles);
 }
 
-void FaceCutter::add(std::span<const uint32_t> corners)
+void FaceCutter::add(std::span<const uint32_t> corners, const FileMesh& mesh)
 {
 	if (corners.size() < 3)
 	{
-		lines.add("mesh '" + m_name + "'");
-		return;
+		lines.add("mesh '" + mesh.name + "'");
 	}
-	const std::size_t first = triangles.size();
-	const bool inside = std::all_of(corners.begin(), corners.end(), [&](uint32_t corner) { return corner < m_positions.size(); });
-	if (!inside)
+	else if (std::any_of(corners.begin(), corners.end(), [&](uint32_t corner) { return corner >= mesh.positions.size(); }))
 	{
-		triangles.emplace_back(~0U); // refers to no vertex
+		m_triangles.emplace_back(~0U); // refers to no vertex
 	}
 	else if (corners.size() == 3)
 	{
-		triangles.emplace_back(corners[0], corners[1], corners[2]);
+		m_triangles.emplace_back(corners[0], corners[1], corners[2]);
 	}
 	else
 	{
-		addPolygon(corners);
-	}
-	for (std::size_t i = first; i < triangles.size() && m_mirrored; ++i)
-	{
-		std::swap(triangles[i].y, triangles[i].z);
+		addPolygon(corners, mesh);
 	}
 }
 
-void FaceCutter::addPolygon(std::span<const uint32_t> corners)
+void FaceCutter::addPolygon(std::span<const uint32_t> corners, const FileMesh& mesh)
 {
 	m_corners.clear();
 	for (const uint32_t corner : corners)
 	{
-		m_corners.push_back(m_positions[corner]);
+		m_corners.push_back(mesh.positions[corner]);
 	}
 	const auto bad = std::find_if(m_corners.begin(), m_corners.end(), [](glm::dvec3 p) { return !std::isfinite(p.x + p.y + p.z); });
 	if (bad != m_corners.end())
 	{
 		// The whole polygon is dropped and counted as one triangle with that vertex.
-		triangles.emplace_back(corners[static_cast<std::size_t>(bad - m_corners.begin())]);
+		m_triangles.emplace_back(corners[static_cast<std::size_t>(bad - m_corners.begin())]);
 		return;
 	}
-	const std::size_t first = triangles.size();
-	if (!triangulate(m_corners, triangles))
+	const std::size_t first = m_triangles.size();
+	if (!triangulate(m_corners, m_triangles))
 	{
-		bad_polygons.add("mesh '" + m_name + "', triangle " + std::to_string(first));
+		bad_polygons.add("mesh '" + mesh.name + "', triangle " + std::to_string(first));
 	}
-	for (std::size_t i = first; i < triangles.size(); ++i)
+	for (std::size_t i = first; i < m_triangles.size(); ++i)
 	{
-		glm::uvec3& triangle = triangles[i];
+		glm::uvec3& triangle = m_triangles[i];
 		triangle = {corners[triangle.x], corners[triangle.y], corners[triangle.z]};
 	}
 }

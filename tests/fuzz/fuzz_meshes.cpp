@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The OBJ, MTL, PLY and STL readers that run before Assimp, and the FBX reader.
+// The OBJ, MTL, PLY, STL and FBX readers.
 #include "fuzz.h"
 
 #include "scene/fbx.h"
@@ -35,12 +35,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 	const std::string fbx = nook::fuzz::fileOf(data, size, ".fbx");
 	nook::fuzz::tryTo([&] { readFbx(fbx); });
 	const std::string text(reinterpret_cast<const char*>(data), size);
-	std::vector<glm::dvec3> exact;
-	std::vector<std::string> solids;
 	nook::MtlMaterials materials;
-	nook::fuzz::tryTo([&] { nook::repairedPly(text, "a.ply", exact); });
-	nook::fuzz::tryTo([&] { nook::repairedStl(text, "a.stl", exact, solids); });
-	nook::fuzz::tryTo([&] { nook::repairedObj(text, "a.obj", exact); });
+	nook::fuzz::tryTo([&] { nook::readPly(text, "a.ply"); });
+	nook::fuzz::tryTo([&] { nook::readStl(text, "a.stl"); });
+	nook::fuzz::tryTo([&] { nook::readObj(text, "a.obj", {}); });
 	nook::fuzz::tryTo([&] { nook::readMtl(text, "a.mtl", materials); });
 	return 0;
 }

@@ -74,7 +74,8 @@ std::size_t storedBytes(const std::vector<EncodedAlpha>& pictures)
 	for (const EncodedAlpha& picture : pictures)
 	{
 		std::error_code failed;
-		const std::uintmax_t size = picture.path.empty() ? picture.bytes.size() : std::filesystem::file_size(picture.path, failed);
+		const std::uintmax_t size =
+			picture.path.empty() ? picture.bytes.size() : std::filesystem::file_size(nativePath(picture.path), failed);
 		bytes += failed ? 0 : static_cast<std::size_t>(size);
 	}
 	return bytes;

@@ -42,12 +42,12 @@ constexpr std::array<std::string_view, 6> kEndings{".gltf", ".glb", ".obj", ".fb
 void checkReadable(const std::string& path)
 {
 	std::error_code failed;
-	const std::filesystem::file_status status = std::filesystem::status(path, failed);
+	const std::filesystem::file_status status = std::filesystem::status(nativePath(path), failed);
 	if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
 	{
 		refuseInput(path + ": cannot be read", "a folder or device", "a file", ExitCode::file);
 	}
-	const std::uintmax_t size = std::filesystem::file_size(path, failed);
+	const std::uintmax_t size = std::filesystem::file_size(nativePath(path), failed);
 	if (!failed && size > kMaxFileBytes)
 	{
 		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(EFBIG));
@@ -85,15 +85,15 @@ Level readLevel(const std::string& path, const LoadSettings& settings, LevelSour
 		addFile(source.files, path);
 		readGeometry(path, settings, source, level);
 	}
-	level.name = std::filesystem::path(path).filename().string();
+	level.name = nativePath(path).filename().string();
 	if (level.triangles.empty())
 	{
 		refuseInput(path, "no triangle", "a surface");
 	}
 	finishMaterials(settings, source, level);
 	Tally missing;
-	const std::filesystem::path parent = std::filesystem::path(path).parent_path();
-	const std::string folder = parent.empty() ? "" : parent.string() + "/";
+	const std::filesystem::path parent = nativePath(path).parent_path();
+	const std::string folder = parent.empty() ? "" : parent.generic_string() + "/";
 	std::unordered_set<std::string> seen;
 	for (const std::string& file : source.missing)
 	{
@@ -381,7 +381,7 @@ std::vector<std::string> hashesOf(const std::vector<std::string>& files)
 	for (const std::string& file : files)
 	{
 		std::error_code failed;
-		if (!std::filesystem::is_regular_file(file, failed))
+		if (!std::filesystem::is_regular_file(nativePath(file), failed))
 		{
 			return {};
 		}

@@ -82,7 +82,11 @@ endif()
 
 if("levels" IN_LIST NOOK_COMPONENTS)
 	nook_need(levels TBB libtbb-dev)
-	nook_need(levels OpenImageIO libopenimageio-dev)
+	if(WIN32)
+		find_package(OpenImageIO QUIET) # optional there: without it, formats that only it reads are refused
+	else()
+		nook_need(levels OpenImageIO libopenimageio-dev)
+	endif()
 	nook_need(levels OpenEXR libopenexr-dev)
 	nook_need(levels PNG libpng-dev)
 	nook_need(levels JPEG libjpeg-dev)

@@ -60,10 +60,16 @@ if built all aarch64 -DCMAKE_EXE_LINKER_FLAGS=-static; then
 	packaging/portable.sh build/aarch64 "$out"
 	tested "nook-*-linux-aarch64.tar.xz" "QEMU on $system" sh tests/targets_test.sh "$PWD/build/release/tools/nook" "$PWD" "$PWD/build" aarch64
 fi
-if built all windows; then
-	(cd build/windows && cpack -G ZIP -B "$out" >/dev/null)
+windows=windows
+test=targets_test.sh
+if [ -e build/windows-libraries ]; then # packaging/windows_libraries.sh
+	windows=windows-levels
+	test=windows_levels_test.sh
+fi
+if built all $windows; then
+	(cd build/$windows && cpack -G ZIP -B "$out" >/dev/null)
 	rm -rf "$out/_CPack_Packages"
-	tested "nook-*-windows-x86_64.zip" "Wine on $system" sh tests/targets_test.sh "$PWD/build/release/tools/nook" "$PWD" "$PWD/build" windows
+	tested "nook-*-windows-x86_64.zip" "Wine on $system" sh tests/$test "$PWD/build/release/tools/nook" "$PWD" "$PWD/build" windows
 fi
 if built all wasm; then
 	(cd build/wasm/npm && npm pack --pack-destination "$out" >/dev/null 2>&1)

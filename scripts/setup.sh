@@ -22,7 +22,7 @@ set -- $(printf '%s ' "$@" | sed 's/targets/aarch64 windows wasm debian/')
 for target in "$@"; do
 	case $target in
 	aarch64) packages="$packages g++-aarch64-linux-gnu" ;;
-	windows) packages="$packages g++-mingw-w64-x86-64-posix wine64" ;;
+	windows) packages="$packages g++-mingw-w64-x86-64-posix wine64 dpkg-dev" ;;
 	wasm) packages="$packages emscripten node-typescript" ;;
 	debian) packages="$packages lintian dpkg-dev fakeroot" ;;
 	library) packages="$packages python3-matplotlib patchelf" ;;

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/system.h"
 #include "core/text.h"
 #include "core/words.h"
 #include "image/drawing.h"
@@ -128,7 +129,7 @@ std::string placeOf(const WorstPixel& worst)
 
 std::string nameOfFile(const std::string& path)
 {
-	return std::filesystem::path(path).filename().string();
+	return nativePath(path).filename().string();
 }
 
 // The errors for people, in three columns.

@@ -3,6 +3,7 @@
 #include "call.h"
 #include "scene_options.h"
 
+#include "core/system.h"
 #include "scene/tracer.h"
 #include "version.h"
 
@@ -107,7 +108,7 @@ void convert(const GBufferOptions& options, VerbProgress& progress)
 	checkOutputs(options.outputs, kGBufferFormats, {options.level.level});
 	progress.start("gbuffer", options.outputs.threads, options.outputs.progress);
 	const GBuffer gbuffer = readGBuffer(options.level.level, import);
-	const std::string name = std::filesystem::path(options.level.level).filename().string();
+	const std::string name = nativePath(options.level.level).filename().string();
 	const Notes notes = notesOf(name, "given", import.normals_from_depth ? "from-depth" : "given");
 	Facts facts = verbFacts("gbuffer");
 	facts.text("gbuffer", name);

@@ -5,6 +5,7 @@
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/lists.h"
+#include "core/system.h"
 #include "scene/camera_choice.h"
 #include "scene/level.h"
 #include "scene/level_glb.h"
@@ -108,7 +109,7 @@ std::vector<std::string> cellFiles(const CellOptions& options, const std::string
 	{
 		return {file};
 	}
-	const std::filesystem::path path(file);
+	const std::filesystem::path path = nativePath(file);
 	std::vector<std::string> files;
 	for (unsigned z = 0; z < options.grid->z; ++z)
 	{
@@ -119,7 +120,7 @@ std::vector<std::string> cellFiles(const CellOptions& options, const std::string
 				const std::string place =
 					"-" + std::to_string(x) + (options.grid->y > 1 ? "-" + std::to_string(y) : "") + "-" + std::to_string(z);
 				std::filesystem::path numbered = path;
-				numbered.replace_filename(path.stem().string() + place + path.extension().string());
+				numbered.replace_filename(nativePath(path.stem().string() + place + path.extension().string()));
 				files.push_back(numbered.string());
 			}
 		}

@@ -5,6 +5,7 @@
 #include "core/file.h"
 #include "core/image_codec.h"
 #include "core/isolate.h"
+#include "core/system.h"
 
 #include <algorithm>
 #include <array>
@@ -73,7 +74,8 @@ std::size_t storedBytes(const std::vector<EncodedAlpha>& pictures)
 	for (const EncodedAlpha& picture : pictures)
 	{
 		std::error_code failed;
-		const std::uintmax_t size = picture.path.empty() ? picture.bytes.size() : std::filesystem::file_size(picture.path, failed);
+		const std::uintmax_t size =
+			picture.path.empty() ? picture.bytes.size() : std::filesystem::file_size(nativePath(picture.path), failed);
 		bytes += failed ? 0 : static_cast<std::size_t>(size);
 	}
 	return bytes;
@@ -114,7 +116,7 @@ bool looksOurs(std::string_view bytes)
 std::string beginOf(const std::string& path)
 {
 	std::string bytes(8, '\0');
-	std::ifstream file(path, std::ios::binary);
+	std::ifstream file(nativePath(path), std::ios::binary);
 	file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 	return bytes;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs a function in a worker process with limits on memory and time, and returns the values it writes.
 //
-// Readers of other people's formats crash, loop and ask for gigabytes on damaged or hostile files. (Assimp 5.2.5 overflows its
-// stack on a glTF whose nodes form a cycle.) A separate process turns all of that into one error line. It is a separate program,
-// not a fork, so that it shares no locks, threads or memory, and so that nook does not load the libraries it links.
+// Readers of other people's formats crash, loop and ask for gigabytes on damaged or hostile files. A separate process turns all of that
+// into one error line. It is a separate program, not a fork, so that it shares no locks, threads or memory, and so that nook does not
+// load the libraries it links.
 #pragma once
 
 #include "core/value_stream.h"
@@ -56,8 +56,6 @@ struct WorkerFunction
 int serveRequests(int argc, char** argv, std::span<const WorkerFunction> functions, const std::function<void()>& prepare = {});
 
 // Shared by both sides: request header and end-of-message codes.
-
-inline constexpr int kWorkerSocket = 3; // in the worker; its standard streams lead nowhere
 
 struct RequestHead
 {

@@ -227,7 +227,7 @@ public:
 		jpeg_create_decompress(&m_jpeg);
 		m_jpeg.progress = &m_progress;
 		m_progress.progress_monitor = onProgress;
-		jpeg_mem_src(&m_jpeg, reinterpret_cast<const unsigned char*>(m_bytes.data()), m_bytes.size());
+		jpeg_mem_src(&m_jpeg, reinterpret_cast<const unsigned char*>(m_bytes.data()), static_cast<unsigned long>(m_bytes.size()));
 		jpeg_read_header(&m_jpeg, TRUE);
 		width_px = static_cast<int>(m_jpeg.image_width);
 		height_px = static_cast<int>(m_jpeg.image_height);

@@ -5,16 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
 #include <system_error>
 
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 namespace nook
@@ -27,41 +22,13 @@ constexpr std::size_t kMaxTextBytes = std::size_t{1} << 20U;
 
 } // namespace
 
-ProcessMemory memoryOf(const std::string& process)
-{
-	ProcessMemory memory;
-	if (std::FILE* const file = std::fopen(("/proc/" + process + "/statm").c_str(), "re"); file != nullptr)
-	{
-		const auto page_bytes = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-		std::size_t mapped = 0;
-		std::size_t resident = 0;
-		memory = std::fscanf(file, "%zu %zu", &mapped, &resident) == 2 ? ProcessMemory{page_bytes * mapped, page_bytes * resident}
-																	   : memory;
-		std::fclose(file);
-	}
-	return memory;
-}
-
 // The stream consists of chunks: a size, then that many bytes. Size 0 ends it, followed by a code and a message.
 void ValueWriter::chunk(const void* data, std::size_t size)
 {
-	const auto send = [this](const void* from, std::size_t left)
+	if (!sendBytes(m_to, &size, sizeof size) || !sendBytes(m_to, data, size))
 	{
-		const auto* at = static_cast<const char*>(from);
-		while (left > 0)
-		{
-			const ssize_t sent = ::send(m_socket, at, left, MSG_NOSIGNAL);
-			if (sent < 0 && errno != EINTR)
-			{
-				throw StreamEnded{};
-			}
-			const std::size_t moved = sent > 0 ? static_cast<std::size_t>(sent) : 0;
-			at += moved;
-			left -= moved;
-		}
-	};
-	send(&size, sizeof size);
-	send(data, size);
+		throw StreamEnded{};
+	}
 }
 
 void ValueWriter::flush()
@@ -116,12 +83,11 @@ void ValueReader::raw(void* data, std::size_t size)
 		{
 			m_wait();
 		}
-		const ssize_t got = ::recv(m_socket, at, size, 0);
-		if (got == 0 || (got < 0 && errno != EINTR))
+		const std::size_t moved = receiveBytes(m_from, at, size);
+		if (moved == 0)
 		{
 			throw StreamEnded{};
 		}
-		const std::size_t moved = got > 0 ? static_cast<std::size_t>(got) : 0;
 		at += moved;
 		size -= moved;
 	}
@@ -188,61 +154,19 @@ void ValueReader::finish()
 namespace
 {
 
-// Address and thread sanitizers reserve terabytes of address space; there, only the parent's check of resident memory applies.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kLimitAddresses = false;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-constexpr bool kLimitAddresses = false;
-#else
-constexpr bool kLimitAddresses = true;
-#endif
-#else
-constexpr bool kLimitAddresses = true;
-#endif
-
-rlim_t processorSeconds()
-{
-	rusage used{};
-	::getrusage(RUSAGE_SELF, &used);
-	return static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1; // rounded up
-}
-
-// Sets a resource limit of this process, never above the inherited one.
-class Limit
-{
-public:
-	explicit Limit(__rlimit_resource what) : m_what(what)
-	{
-		::getrlimit(m_what, &m_given);
-	}
-
-	// True if the requested limit is the effective one.
-	bool set(rlim_t most) const
-	{
-		rlimit limit = m_given;
-		limit.rlim_cur = std::min(m_given.rlim_cur, most);
-		::setrlimit(m_what, &limit);
-		return most < m_given.rlim_cur;
-	}
-
-private:
-	__rlimit_resource m_what;
-	rlimit m_given{};
-};
-
 class Server
 {
 public:
-	explicit Server(std::span<const WorkerFunction> functions) : m_functions(functions) {}
+	Server(const WorkerStreams& streams, std::span<const WorkerFunction> functions) : m_streams(streams), m_functions(functions) {}
 
 	// Serves one request. Throws StreamEnded if there is none.
 	void serve()
 	{
-		ValueReader request(kWorkerSocket);
-		ValueWriter answer(kWorkerSocket);
+		ValueReader request(m_streams.from);
+		ValueWriter answer(m_streams.to);
 		const std::string name = request.text();
-		const bool ours = limit(request.value<RequestHead>());
+		const auto head = request.value<RequestHead>();
+		const bool ours = limitThisProcess(head.limited, head.memory_bytes, head.processor_s);
 		try
 		{
 			run(name, request, answer);
@@ -273,13 +197,6 @@ public:
 	}
 
 private:
-	bool limit(const RequestHead& head) const
-	{
-		m_processor.set(head.limited ? processorSeconds() + static_cast<rlim_t>(head.processor_s) : RLIM_INFINITY);
-		const std::size_t mapped = memoryOf("self").mapped_bytes;
-		return m_addresses.set(head.limited && kLimitAddresses && mapped > 0 ? mapped + head.memory_bytes : RLIM_INFINITY);
-	}
-
 	// Reads the rest of a request: closing a socket with unread data loses the answer.
 	static void skip(ValueReader& request)
 	{
@@ -307,9 +224,8 @@ private:
 		found->run(request, answer);
 	}
 
+	WorkerStreams m_streams;
 	std::span<const WorkerFunction> m_functions;
-	Limit m_processor{RLIMIT_CPU};
-	Limit m_addresses{RLIMIT_AS};
 };
 
 } // namespace
@@ -321,27 +237,21 @@ int serveRequests(int argc, char** argv, std::span<const WorkerFunction> functio
 		std::fprintf(stderr, "%s: a part of nook, which starts it where it is needed\n", argv[0]);
 		return static_cast<int>(ExitCode::usage);
 	}
-	// End with the parent, and only then: a terminal sends these signals to both, and the parent must handle them.
-	::prctl(PR_SET_PDEATHSIG, SIGKILL);
-	for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-	{
-		std::signal(signal, SIG_IGN);
-	}
-	if (std::to_string(::getppid()) != argv[1])
+	const std::optional<WorkerStreams> streams = takeStreams(argv[1]);
+	if (!streams)
 	{
 		return static_cast<int>(ExitCode::runtime);
 	}
-	Limit(RLIMIT_CORE).set(0);
 	try
 	{
 		if (prepare)
 		{
 			prepare();
 		}
-		ValueWriter greeting(kWorkerSocket);
+		ValueWriter greeting(streams->to);
 		greeting.text(NOOK_WORKER_VERSION);
 		greeting.finish(ExitCode::ok, "");
-		for (Server server(functions);;)
+		for (Server server(*streams, functions);;)
 		{
 			server.serve();
 		}

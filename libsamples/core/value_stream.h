@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sends plain values through a socket to another nook process. A message ends with an exit code and a line of text.
+// Sends plain values through a stream to another nook process. A message ends with an exit code and a line of text.
 #pragma once
 
 #include "core/error.h"
+#include "core/process.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -21,18 +22,10 @@ struct StreamEnded
 	const char* found = nullptr; // null: use the other process's exit status
 };
 
-// Memory of a process, by its number or "self"; 0 if unknown.
-struct ProcessMemory
-{
-	std::size_t mapped_bytes = 0;
-	std::size_t resident_bytes = 0;
-};
-ProcessMemory memoryOf(const std::string& process);
-
 class ValueWriter
 {
 public:
-	explicit ValueWriter(int socket) : m_socket(socket) {}
+	explicit ValueWriter(StreamEnd to) : m_to(to) {}
 
 	void bytes(const void* data, std::size_t size);
 	void text(std::string_view text);
@@ -56,7 +49,7 @@ private:
 	void chunk(const void* data, std::size_t size);
 	void flush();
 
-	int m_socket;
+	StreamEnd m_to;
 	std::vector<char> m_buffer; // of the next chunk
 };
 
@@ -65,7 +58,7 @@ class ValueReader
 {
 public:
 	// `wait` is called before each read. It returns once there is something to read, and throws if nothing will come.
-	explicit ValueReader(int socket, std::function<void()> wait = {}) : m_socket(socket), m_wait(std::move(wait)) {}
+	explicit ValueReader(StreamEnd from, std::function<void()> wait = {}) : m_from(from), m_wait(std::move(wait)) {}
 
 	void bytes(void* data, std::size_t size);
 	std::string text();
@@ -103,7 +96,7 @@ private:
 	void raw(void* data, std::size_t size);
 	void lastWords();
 
-	int m_socket;
+	StreamEnd m_from;
 	std::function<void()> m_wait;
 	std::size_t m_chunk_left = 0;
 	bool m_finished = false;

@@ -2,6 +2,7 @@
 #include "scene/camera.h"
 
 #include "core/math.h"
+#include "core/system.h"
 #include "core/words.h"
 #include "scene/camera_choice.h"
 
@@ -256,12 +257,12 @@ std::vector<std::string> pictureFiles(const std::string& file, int count)
 	{
 		return {file};
 	}
-	const std::filesystem::path path(file);
+	const std::filesystem::path path = nativePath(file);
 	std::vector<std::string> files;
 	for (int i = 1; i <= count; ++i)
 	{
 		std::filesystem::path numbered = path;
-		numbered.replace_filename(path.stem().string() + "-" + std::to_string(i) + path.extension().string());
+		numbered.replace_filename(nativePath(path.stem().string() + "-" + std::to_string(i) + path.extension().string()));
 		files.push_back(numbered.string());
 	}
 	return files;

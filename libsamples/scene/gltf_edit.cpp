@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/json_text.h"
+#include "core/system.h"
 
 #include <glm/common.hpp>
 
@@ -342,7 +343,7 @@ void GltfEditor::rebase(const std::string& output)
 	std::error_code failed;
 	const auto folderOf = [&failed](const std::string& path)
 	{
-		const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+		const std::filesystem::path folder = nativePath(path).parent_path();
 		return std::filesystem::weakly_canonical(folder.empty() ? "." : folder, failed);
 	};
 	const std::filesystem::path to = folderOf(output);
@@ -357,8 +358,8 @@ void GltfEditor::rebase(const std::string& output)
 			const std::string uri = textIn(item, "uri");
 			if (!uri.empty() && !uri.starts_with("data:") && uri.find("://") == std::string::npos)
 			{
-				const std::filesystem::path named =
-					std::filesystem::weakly_canonical(std::filesystem::absolute(besideLevel(file.path, unescaped(uri))), failed);
+				const std::filesystem::path named = std::filesystem::weakly_canonical(
+					std::filesystem::absolute(nativePath(besideLevel(file.path, unescaped(uri)))), failed);
 				item["uri"] = escapedUri(std::filesystem::relative(named, to, failed).generic_string());
 			}
 		}

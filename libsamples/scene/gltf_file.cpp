@@ -3,6 +3,7 @@
 
 #include "core/base64.h"
 #include "core/file.h"
+#include "core/system.h"
 #include "core/words.h"
 
 #include <algorithm>
@@ -354,8 +355,8 @@ private:
 		}
 		const std::string path = besideLevel(m_file.path, unescaped(uri));
 		std::error_code failed;
-		const bool regular = std::filesystem::is_regular_file(path, failed);
-		const uint64_t size = regular ? std::filesystem::file_size(path, failed) : 0;
+		const bool regular = std::filesystem::is_regular_file(nativePath(path), failed);
+		const uint64_t size = regular ? std::filesystem::file_size(nativePath(path), failed) : 0;
 		if (!regular || failed)
 		{
 			refuseInput(m_file.path + ": " + item.element, "no file " + path, "the level's data", ExitCode::file);

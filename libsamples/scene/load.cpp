@@ -6,6 +6,7 @@
 #include "core/file.h"
 #include "core/lists.h"
 #include "core/parallel.h"
+#include "core/system.h"
 #include "core/words.h"
 #include "core/work_units.h"
 #include "scene/builtin.h"
@@ -41,17 +42,17 @@ constexpr std::array<std::string_view, 6> kEndings{".gltf", ".glb", ".obj", ".fb
 void checkReadable(const std::string& path)
 {
 	std::error_code failed;
-	const std::filesystem::file_status status = std::filesystem::status(path, failed);
+	const std::filesystem::file_status status = std::filesystem::status(nativePath(path), failed);
 	if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
 	{
 		refuseInput(path + ": cannot be read", "a folder or device", "a file", ExitCode::file);
 	}
-	const std::uintmax_t size = std::filesystem::file_size(path, failed);
+	const std::uintmax_t size = std::filesystem::file_size(nativePath(path), failed);
 	if (!failed && size > kMaxFileBytes)
 	{
 		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(EFBIG));
 	}
-	const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+	const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(openFile(path, "rb"), &std::fclose);
 	if (file == nullptr)
 	{
 		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(errno));
@@ -84,15 +85,15 @@ Level readLevel(const std::string& path, const LoadSettings& settings, LevelSour
 		addFile(source.files, path);
 		readGeometry(path, settings, source, level);
 	}
-	level.name = std::filesystem::path(path).filename().string();
+	level.name = nativePath(path).filename().string();
 	if (level.triangles.empty())
 	{
 		refuseInput(path, "no triangle", "a surface");
 	}
 	finishMaterials(settings, source, level);
 	Tally missing;
-	const std::filesystem::path parent = std::filesystem::path(path).parent_path();
-	const std::string folder = parent.empty() ? "" : parent.string() + "/";
+	const std::filesystem::path parent = nativePath(path).parent_path();
+	const std::string folder = parent.empty() ? "" : parent.generic_string() + "/";
 	std::unordered_set<std::string> seen;
 	for (const std::string& file : source.missing)
 	{
@@ -380,7 +381,7 @@ std::vector<std::string> hashesOf(const std::vector<std::string>& files)
 	for (const std::string& file : files)
 	{
 		std::error_code failed;
-		if (!std::filesystem::is_regular_file(file, failed))
+		if (!std::filesystem::is_regular_file(nativePath(file), failed))
 		{
 			return {};
 		}

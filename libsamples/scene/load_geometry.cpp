@@ -3,6 +3,7 @@
 #include "core/file.h"
 #include "core/image.h"
 #include "core/isolate.h"
+#include "core/system.h"
 #include "core/words.h"
 #include "scene/load_parts.h"
 
@@ -223,7 +224,7 @@ std::size_t bytesOf(const std::vector<std::string>& files)
 	for (const std::string& file : files)
 	{
 		std::error_code failed;
-		const std::uintmax_t size = std::filesystem::file_size(file, failed);
+		const std::uintmax_t size = std::filesystem::file_size(nativePath(file), failed);
 		bytes += failed ? 0 : static_cast<std::size_t>(size);
 	}
 	return bytes;
@@ -264,7 +265,7 @@ void checkThere(const LoadSettings& settings, const LevelSource& source, const s
 			continue;
 		}
 		std::error_code failed;
-		if (!std::filesystem::is_regular_file(mask.path, failed))
+		if (!std::filesystem::is_regular_file(nativePath(mask.path), failed))
 		{
 			refuseInput(level_path, "no file " + mask.path, "the mask of a material", ExitCode::file);
 		}

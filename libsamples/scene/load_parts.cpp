@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/load_parts.h"
 
+#include "core/system.h"
 #include "core/words.h"
 
 #include <glm/geometric.hpp>
@@ -27,7 +28,7 @@ void addFile(std::vector<std::string>& files, const std::string& path)
 void noteMissingFile(LevelSource& source, const std::string& path)
 {
 	std::error_code failed;
-	if (!std::filesystem::is_regular_file(path, failed))
+	if (!std::filesystem::is_regular_file(nativePath(path), failed))
 	{
 		source.missing.push_back(path);
 	}
@@ -36,16 +37,16 @@ void noteMissingFile(LevelSource& source, const std::string& path)
 std::string besideLevel(const std::string& level_path, std::string name)
 {
 	std::replace(name.begin(), name.end(), '\\', '/');
-	const std::filesystem::path folder = std::filesystem::path(level_path).parent_path();
-	const std::filesystem::path given = folder / name; // absolute names stay absolute
+	const std::filesystem::path folder = nativePath(level_path).parent_path();
+	const std::filesystem::path given = folder / nativePath(name); // absolute names stay absolute
 	std::error_code failed;
 	if (std::filesystem::exists(given, failed))
 	{
-		return given.string();
+		return given.generic_string();
 	}
 	// A path from the machine where the level was made: the picture may be next to the level.
-	const std::filesystem::path sibling = folder / std::filesystem::path(name).filename();
-	return std::filesystem::exists(sibling, failed) ? sibling.string() : given.string();
+	const std::filesystem::path sibling = folder / nativePath(name).filename();
+	return std::filesystem::exists(sibling, failed) ? sibling.generic_string() : given.generic_string();
 }
 
 void checkCounts(const std::string& where, uint64_t triangles, uint64_t vertices, const std::string& counted)
@@ -59,7 +60,7 @@ void checkCounts(const std::string& where, uint64_t triangles, uint64_t vertices
 
 std::string endingOf(const std::string& path)
 {
-	return lowered(std::filesystem::path(path).extension().string());
+	return lowered(nativePath(path).extension().string());
 }
 
 glm::dmat4 worldFromFile(const LoadSettings& settings)
@@ -233,9 +234,9 @@ void checkInside(const std::string& level_path, const std::string& reference, co
 		return;
 	}
 	std::error_code failed;
-	const std::filesystem::path parent = std::filesystem::path(level_path).parent_path();
+	const std::filesystem::path parent = nativePath(level_path).parent_path();
 	const std::filesystem::path folder = std::filesystem::canonical(parent.empty() ? "." : parent, failed);
-	const std::filesystem::path file = std::filesystem::canonical(path, failed);
+	const std::filesystem::path file = std::filesystem::canonical(nativePath(path), failed);
 	if (failed)
 	{
 		return; // missing; reported elsewhere

@@ -3,6 +3,8 @@
 // beside it.
 #include "scene/mesh_text.h"
 
+#include "core/system.h"
+
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -203,13 +205,13 @@ private:
 		const auto is_file = [](const std::string& path)
 		{
 			std::error_code failed;
-			return std::filesystem::is_regular_file(path, failed);
+			return std::filesystem::is_regular_file(nativePath(path), failed);
 		};
 		std::string path = besideLevel(m_path, name);
 		if (!is_file(path))
 		{
 			addFile(m_file.missing, path);
-			path = std::filesystem::path(m_path).replace_extension(".mtl").string();
+			path = nativePath(m_path).replace_extension(".mtl").string();
 		}
 		if (is_file(path) && std::find(m_file.files.begin(), m_file.files.end(), path) == m_file.files.end())
 		{

@@ -268,6 +268,36 @@ fails 3 'kept_other.gltf: asset.extras.nook.undo: found no patch of this file' b
 for to in texcoord texcoord:8 custom: 'custom:a b' color:1 grey; do
 	fails 1 '--to: found' bake kept_two.gltf --radius 1 --to "$to" -o b.gltf
 done
+# Coordinates of its own: in the next set of each file, with all else as it was, and the same after baking again.
+unwrapped()
+{
+	command -v python3 >../stdout || return
+	checks=$((checks + 1))
+	python3 "$source/tests/unwrapped.py" "$@" >../log 2>&1 || problem "unwrapped $*: $(cat ../log)"
+}
+works '^unwrapped: 2 charts on 1 pages, texels of 0.0[0-9]* m, coverage 0.[3-9][0-9]*, stretch 1' bake kept_two.gltf --radius 1 --rays 8 --unwrap --texture 64 -o kept_u.gltf --threads 1
+unwrapped kept_two.gltf kept_u.gltf
+works '"shared_meshes": 1' bake kept_u.gltf --radius 1 --rays 8 --unwrap --texture 64 -o kept_v.gltf --threads 2 --json -
+checks=$((checks + 1))
+sed 's/kept_[uv].gltf/kept_two.gltf/' kept_v.gltf >b.gltf
+sed 's/kept_[uv].gltf/kept_two.gltf/' kept_u.gltf | cmp -s - b.gltf || problem "--unwrap again: found another file than once"
+works '"pages": [23],' bake kept_two.gltf --radius 1 --rays 8 --unwrap --texture 32 --texel-size 0.1 --pages 4 --margin 1 -o kept_w.glb --json -
+unwrapped kept_two.gltf kept_w.glb
+works '"texels_across": 128,' bake kept_two.gltf --radius 1 --rays 8 --unwrap --texel-size 0.03 -o b.glb --json -
+works '^level: kept_w.glb, 4 triangles' info kept_w.glb --allow-outside
+works '' bake kept_u.gltf --radius 1 --rays 8 -o kept_v.gltf --json s.json
+additions kept_two.gltf kept_v.gltf
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 2 0\nf 1 2 3\nf 1 2 3\nf 3 2 1\nf 1 3 4\nf 1 3 2 4\nf 1 3 5\nf 1 1 2\n' >kept_soup.obj
+works '"pages": 1,' bake kept_soup.obj --radius 1 --rays 8 --unwrap --texture 64 -o b.glb --json -
+sed 's/"TEXCOORD_0": 1/"TEXCOORD_0": 1, "TEXCOORD_1": 1, "TEXCOORD_2": 1, "TEXCOORD_3": 1, "TEXCOORD_4": 1, "TEXCOORD_5": 1, "TEXCOORD_6": 1, "TEXCOORD_7": 1/' kept_two.gltf >kept_full.gltf
+fails 3 'kept_full.gltf: meshes: found no free set of texture coordinates' bake kept_full.gltf --radius 1 --unwrap -o kept_full.gltf
+fails 3 'kept_two.gltf: unwrap: found 2 charts that 1 pages of 16 texels do not hold' bake kept_two.gltf --radius 1 --unwrap --texture 16 --margin 8 -o b.glb
+fails 1 '--texel-size: found without' bake kept_two.gltf --radius 1 --texel-size 1 -o b.glb
+fails 1 '--pages: found without' bake kept_two.gltf --radius 1 --texture 64 --pages 2 -o b.glb
+fails 1 '--margin: found without' bake kept_two.gltf --radius 1 --texture 64 --margin 2 -o b.glb
+fails 1 '--unwrap: found with --to color' bake kept_two.gltf --radius 1 --unwrap --to color -o b.glb
+fails 1 '--unwrap: found with --probes' bake kept_two.gltf --radius 1 --unwrap --probes 1 -o b.glb
+rm -f b.gltf b.glb s.json
 # Parts: a lamp that is ignored darkens as little as none, and nodes that receive nothing keep their mesh.
 sed 's/"name": "high"/"name": "Lamp, old"/; s/"extras": 3/"extras": {"kind": "floor"}/' kept_two.gltf >kept_parts.gltf
 sed 's/"nodes": .1, 0./"nodes": [0]/' kept_parts.gltf >kept_alone.gltf

@@ -58,7 +58,7 @@ TEST_CASE("bake: a texture agrees with rays, and charts do not bleed", "[bake]")
 	CHECK(bake.shared == 0);
 	CHECK(bake.buried > 0);
 	CHECK(bake.covered > 128 * 128 / 4);
-	const BakeCheck check = checkTexture(tracer, level.uvs, bake, settings, 1000, {});
+	const BakeCheck check = checkTexture(tracer, level.uvs, {&bake, 1}, {}, settings, 1000, {});
 	CAPTURE(check.rmse, check.bias);
 	CHECK(check.rmse < 0.04);
 	CHECK(std::fabs(check.bias) < 0.005);

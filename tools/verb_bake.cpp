@@ -6,6 +6,7 @@
 #include "bake/bake.h"
 #include "bake/probes.h"
 #include "bake/texture.h"
+#include "bake/unwrap.h"
 #include "core/decimal.h"
 #include "core/image.h"
 #include "core/lists.h"
@@ -24,6 +25,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 namespace nook
@@ -52,6 +54,8 @@ struct BakeOptions
 	std::optional<double> falloff_u_m;
 	double probes_m = 0.0; // spacing; 0: vertices
 	int texture_px = 0;    // 0: vertices
+	bool unwrap = false;   // texture coordinates of its own
+	UnwrapSettings charts; // for that
 	std::string volumes;   // drawn as well; empty: none
 	bool mask = false;     // how they are drawn
 	int directions = 128;
@@ -112,6 +116,7 @@ void declare(CLI::App& app, BakeOptions& options)
 {
 	BakeSettings& settings = options.settings;
 	const OptionRule volumes{"--volumes", "--volumes", "no volumes"};
+	const OptionRule unwrap{"--unwrap", "--unwrap", "without it"};
 	const auto take_target = [&options](const std::string& name, const std::string& text)
 	{
 		takeTarget(options, name, text);
@@ -177,6 +182,21 @@ void declare(CLI::App& app, BakeOptions& options)
 		  "Texels across of an occlusion texture, in place of values at vertices; by the level's second texture coordinates or by "
 		  "the first",
 		  excludes("--probes")},
+		 {"--unwrap", takesFlag(options.unwrap),
+		  "A texture with coordinates of its own, which the file gets as its next set: charts that do not overlap",
+		  excludes("--probes")},
+		 {"--texel-size",
+		  takesNumber(options.charts.texel_m, 1e-6, 1e6),
+		  "With --unwrap: metres across a texel (default: as many texels as --texture holds)",
+		  {.needs = {unwrap}}},
+		 {"--pages",
+		  takesWhole(options.charts.pages, 1, 64),
+		  "With --unwrap: so many textures at most (default 1)",
+		  {.needs = {unwrap}}},
+		 {"--margin",
+		  takesWhole(options.charts.margin_px, 0, kMostMargin_px),
+		  "With --unwrap: texels around each chart that no other has (default 3, which keeps two mipmaps apart)",
+		  {.needs = {unwrap}}},
 		 {"--probes", takesNumber(options.probes_m, 1e-6, 1e9),
 		  "Metres between the probes of a grid, for what moves, in place of vertices: a texture (.ktx2) and its reader (.glsl)"},
 		 seedRow(settings.seed)});
@@ -196,7 +216,12 @@ void settle(BakeOptions& options)
 	{
 		refuse("--max-error: found with --to texture, expected vertices");
 	}
-	if (options.target == BakeTarget::texture && options.texture_px == 0)
+	if (options.unwrap && options.target != BakeTarget::texture && isGiven(*options.app, "--to"))
+	{
+		refuse("--unwrap: found with --to " + options.to + ", expected --to texture");
+	}
+	options.charts.size_px = options.texture_px > 0 || options.charts.texel_m > 0.0 ? options.texture_px : kStandardTexture;
+	if ((options.target == BakeTarget::texture || options.unwrap) && options.texture_px == 0)
 	{
 		options.texture_px = kStandardTexture;
 	}
@@ -394,6 +419,18 @@ bool isValues(const std::string& path)
 	return ending == ".csv" || ending == ".npy" || ending == ".json";
 }
 
+// Where a level's vertices are in its own file, or in one made of it.
+GltfFile fileOf(const BakeOptions& options, const BakeInput& input, const Level& level, std::vector<GltfPlace>& places,
+				Level* as_read, const RunSettings& how)
+{
+	if (input.in_place)
+	{
+		places = loadPlaces(options.level.level, options.level.load, input.level(), options.receivers, how, as_read);
+		return fileOf(options);
+	}
+	return openGlb(levelGlb(level, kProgram, places), level.name);
+}
+
 // Adds values to the level's file, or to a file made of the level.
 GltfBaked write(const BakeOptions& options, const BakeInput& input, const Level& level, const GltfBake& bake, Made& made,
 				const RunSettings& how)
@@ -402,15 +439,9 @@ GltfBaked write(const BakeOptions& options, const BakeInput& input, const Level&
 	std::vector<std::string> outputs = options.outputs.files;
 	std::erase_if(outputs, isValues);
 	outputs.resize(std::max<std::size_t>(outputs.size(), 1), "-"); // its size is reported in any case
-	std::optional<GltfFile> file;
-	if (input.in_place)
+	const GltfFile file = fileOf(options, input, input.part ? input.level() : level, places, nullptr, how);
+	if (!input.in_place)
 	{
-		places = loadPlaces(options.level.level, options.level.load, input.level(), options.receivers, how);
-		file = fileOf(options);
-	}
-	else
-	{
-		file = openGlb(levelGlb(input.part ? input.level() : level, kProgram, places), level.name);
 		std::erase_if(places, [&input](const GltfPlace& place) { return input.part && input.receivers[place.triangle] == 0; });
 	}
 	for (std::size_t i = 0; input.part && i < places.size(); ++i)
@@ -421,7 +452,7 @@ GltfBaked write(const BakeOptions& options, const BakeInput& input, const Level&
 		}
 		std::erase_if(places[i].vertices, [](const auto& vertex) { return vertex.second == UINT32_MAX; });
 	}
-	GltfBaked baked = bakeInto(*file, places, bake, outputs);
+	GltfBaked baked = bakeInto(file, places, bake, outputs);
 	for (std::size_t i = 0, next = 0; i < options.outputs.files.size(); ++i)
 	{
 		const std::string& path = options.outputs.files[i];
@@ -554,6 +585,92 @@ Made makeVertices(const BakeOptions& options, const BakeInput& input, Facts& fac
 	return made;
 }
 
+std::string pngOf(const TextureBake& bake)
+{
+	const std::vector<uint8_t> rgb = listOf(3 * bake.values.size(), [&bake](std::size_t i) { return bake.values[i / 3]; });
+	return pngBytes(bake.size_px, bake.size_px, rgb, {});
+}
+
+void addTexture(Facts& facts, const std::vector<TextureBake>& pages, std::size_t png_bytes)
+{
+	const auto sum = [&pages](std::size_t TextureBake::*member)
+	{
+		return std::accumulate(pages.begin(), pages.end(), std::size_t{0},
+							   [member](std::size_t all, const TextureBake& page) { return all + page.*member; });
+	};
+	double squares = 0.0;
+	for (const TextureBake& page : pages)
+	{
+		squares += page.standard_error * page.standard_error / static_cast<double>(pages.size());
+	}
+	const std::string across = std::to_string(pages.front().size_px);
+	facts.whole("texels_across", pages.front().size_px);
+	facts.whole("charts", sum(&TextureBake::charts));
+	facts.whole("covered_texels", sum(&TextureBake::covered));
+	facts.whole("shared_texels", sum(&TextureBake::shared));
+	facts.whole("buried_texels", sum(&TextureBake::buried));
+	facts.line("texture: " + across + " x " + across + " texels, " + std::to_string(sum(&TextureBake::covered)) + " of them in " +
+			   std::to_string(sum(&TextureBake::charts)) + " charts, " + std::to_string(sum(&TextureBake::shared)) +
+			   " in more than one, " + std::to_string(sum(&TextureBake::buried)) + " inside matter");
+	facts.whole("missed_triangles", sum(&TextureBake::missed), "triangles without a texel");
+	facts.whole("rays", sum(&TextureBake::rays));
+	facts.whole("png_bytes", png_bytes);
+	facts.number("rms_standard_error", std::sqrt(squares));
+	facts.line("standard error: " + roundedText(std::sqrt(squares), 3) + " of a texel");
+}
+
+Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& facts, const RunSettings& how)
+{
+	std::vector<GltfPlace> places;
+	Level as_read;
+	const GltfFile file = fileOf(options, input, input.level(), places, &as_read, how);
+	const Level& level = input.in_place ? as_read : input.level();
+	const Unwrapped unwrapped = unwrap(level, piecesOf(places, level.name), options.charts, how);
+	BakeSettings settings = options.settings;
+	const auto marksOf = [&](const auto& isWanted)
+	{
+		return mapped(unwrapped.page_of, [&](uint32_t page) { return static_cast<uint8_t>(isWanted(page) ? 1 : 0); });
+	};
+	std::vector<TextureBake> pages;
+	for (std::size_t page = 0; page < unwrapped.pages; ++page)
+	{
+		const LevelPart part = partOf(unwrapped.level, marksOf([page](uint32_t of) { return of == page; }), how.threads);
+		settings.receivers = &part.level;
+		pages.push_back(bakeTexture(input.tracer, part.level.uvs, unwrapped.size_px, settings, how));
+	}
+	const LevelPart solid = partOf(unwrapped.level, marksOf([](uint32_t of) { return of != kNoPage; }), how.threads);
+	std::vector<uint32_t> page_of = unwrapped.page_of;
+	std::erase(page_of, kNoPage);
+	settings.receivers = &solid.level;
+	const BakeCheck check = checkTexture(input.tracer, solid.level.uvs, pages, page_of, settings, kCheckPoints, how);
+	if (isShare(how))
+	{
+		return {};
+	}
+	GltfBake in = bakeOf(options);
+	in.charts = chartsOf(places, unwrapped);
+	in.pages = mapped(pages, pngOf);
+	Made made;
+	GltfBaked baked =
+		bakeInto(file, places, in, options.outputs.files.empty() ? std::vector<std::string>{"-"} : options.outputs.files);
+	facts.text("coordinates", "unwrapped");
+	facts.whole("pages", unwrapped.pages);
+	facts.number("texel_size_m", unwrapped.texel_m);
+	facts.number("coverage", unwrapped.coverage);
+	facts.number("stretch", unwrapped.stretch);
+	facts.line("unwrapped: " + std::to_string(unwrapped.charts) + " charts on " + std::to_string(unwrapped.pages) +
+			   " pages, texels of " + roundedText(unwrapped.texel_m, 3) + " m, coverage " + roundedText(unwrapped.coverage, 3) +
+			   ", stretch " + roundedText(unwrapped.stretch, 3));
+	addTexture(facts, pages, baked.bytes_added);
+	addCheck(facts, options, check, "points of the surface");
+	addFile(facts, input, baked);
+	if (!options.outputs.files.empty())
+	{
+		made.bytes = std::move(baked.files);
+	}
+	return made;
+}
+
 Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& facts, const RunSettings& how)
 {
 	const Level& level = input.level();
@@ -568,15 +685,15 @@ Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& fact
 		of_file = loadSecondUvs(options.level.level, options.level.load, level, how, set);
 	}
 	const std::vector<glm::vec2>& uvs = of_file.empty() ? level.uvs : of_file;
-	const TextureBake bake = bakeTexture(input.tracer, uvs, options.texture_px, settings, how);
-	const BakeCheck check = checkTexture(input.tracer, uvs, bake, settings, kCheckPoints, how);
+	const std::vector<TextureBake> pages{bakeTexture(input.tracer, uvs, options.texture_px, settings, how)};
+	const BakeCheck check = checkTexture(input.tracer, uvs, pages, {}, settings, kCheckPoints, how);
 	if (isShare(how))
 	{
 		return {};
 	}
-	std::vector<uint8_t> rgb = listOf(3 * bake.values.size(), [&bake](std::size_t i) { return bake.values[i / 3]; });
-	const std::string png = pngBytes(bake.size_px, bake.size_px, rgb, {});
-	give<uint8_t>("texels", bake.values, {static_cast<std::size_t>(bake.size_px), static_cast<std::size_t>(bake.size_px)});
+	const auto size = static_cast<std::size_t>(options.texture_px);
+	give<uint8_t>("texels", pages.front().values, {size, size});
+	const std::string png = pngOf(pages.front());
 	GltfBake in = bakeOf(options);
 	in.png = png;
 	in.uv_set = set;
@@ -587,19 +704,7 @@ Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& fact
 	Made made;
 	const GltfBaked baked = write(options, input, level, in, made, how);
 	facts.text("coordinates", second ? "second" : "first");
-	facts.whole("texels_across", bake.size_px);
-	facts.whole("charts", bake.charts);
-	facts.whole("covered_texels", bake.covered);
-	facts.whole("shared_texels", bake.shared);
-	facts.whole("buried_texels", bake.buried);
-	facts.line("texture: " + std::to_string(bake.size_px) + " x " + std::to_string(bake.size_px) + " texels, " +
-			   std::to_string(bake.covered) + " of them in " + std::to_string(bake.charts) + " charts, " +
-			   std::to_string(bake.shared) + " in more than one, " + std::to_string(bake.buried) + " inside matter");
-	facts.whole("missed_triangles", bake.missed, "triangles without a texel");
-	facts.whole("rays", bake.rays);
-	facts.whole("png_bytes", png.size());
-	facts.number("rms_standard_error", bake.standard_error);
-	facts.line("standard error: " + roundedText(bake.standard_error, 3) + " of a texel");
+	addTexture(facts, pages, png.size());
 	addCheck(facts, options, check, "points of the surface");
 	addFile(facts, input, baked);
 	return made;
@@ -661,6 +766,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 										  : kBakeFormats,
 				 others(inputs));
 	const RunSettings how = progress.start("bake", options.outputs.threads, options.outputs.progress);
+	options.level.load.undo_bake = t_call == nullptr;
 	LoadedLevel loaded = t_call != nullptr ? *t_call->level : loadLevel(options.level.level, options.level.load, how);
 	checkRead(options.outputs, others(loaded.level.files));
 	std::vector<std::string> read = loaded.level.files;
@@ -715,6 +821,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 	facts.whole("turned_triangles", turned);
 	addSettings(facts, options);
 	const Made made = probes                   ? makeProbes(options, input.tracer, facts, how)
+					  : options.unwrap         ? makeUnwrapped(options, input, facts, how)
 					  : options.texture_px > 0 ? makeTexture(options, input, facts, how)
 											   : makeVertices(options, input, facts, how);
 	if (isShare(how))

@@ -3,6 +3,7 @@
 
 #include "bake/surface_samples.h"
 #include "core/decimal.h"
+#include "core/lists.h"
 #include "core/words.h"
 #include "scene/topology.h"
 
@@ -394,8 +395,8 @@ void fillEmpty(std::vector<float>& values, int size_px)
 TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, int size_px, const BakeSettings& settings,
 						const RunSettings& run)
 {
-	assert(size_px >= kLeastTexture_px && size_px <= kMostTexture_px && uvs.size() == surfaceOf(tracer, settings).positions.size());
 	const Level& level = surfaceOf(tracer, settings);
+	assert(size_px >= kLeastTexture_px && size_px <= kMostTexture_px && uvs.size() == level.positions.size());
 	checkUvs(level, uvs);
 	TextureBake bake;
 	bake.size_px = size_px;
@@ -433,19 +434,25 @@ TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, in
 	return bake;
 }
 
-BakeCheck checkTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, const TextureBake& bake, const BakeSettings& settings,
-					   std::size_t points, const RunSettings& run)
+BakeCheck checkTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, std::span<const TextureBake> pages,
+					   std::span<const uint32_t> page_of, const BakeSettings& settings, std::size_t points, const RunSettings& run)
 {
-	Mask mask; // one channel, sampled like a texture unit does
-	mask.width_px = bake.size_px;
-	mask.height_px = bake.size_px;
-	mask.wrap_u = Wrap::clamp;
-	mask.wrap_v = Wrap::clamp;
-	mask.alpha = bake.values;
+	const std::vector<Mask> masks = mapped(pages,
+										   [](const TextureBake& page)
+										   {
+											   Mask mask; // one channel, sampled like a texture unit does
+											   mask.width_px = page.size_px;
+											   mask.height_px = page.size_px;
+											   mask.wrap_u = Wrap::clamp;
+											   mask.wrap_v = Wrap::clamp;
+											   mask.alpha = page.values;
+											   return mask;
+										   });
 	const Level& level = surfaceOf(tracer, settings);
 	const auto valueOf = [&](const SurfaceSample& sample)
 	{
-		return alphaAt(mask, glm::dvec2(interpolated(uvs, level.triangles[sample.triangle], sample.b, sample.c)));
+		return alphaAt(masks[page_of.empty() ? 0 : page_of[sample.triangle]],
+					   glm::dvec2(interpolated(uvs, level.triangles[sample.triangle], sample.b, sample.c)));
 	};
 	return checkValues(tracer, level, valueOf, settings, points, run);
 }

@@ -36,9 +36,9 @@ struct TextureBake
 TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, int size_px, const BakeSettings& settings,
 						const RunSettings& run);
 
-// Like checkBake, for the texture sampled bilinearly as by a texture unit.
-BakeCheck checkTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, const TextureBake& bake, const BakeSettings& settings,
-					   std::size_t points, const RunSettings& run);
+// Like checkBake, for the texture sampled bilinearly as by a texture unit. `page_of`: the page of each triangle; empty: the first.
+BakeCheck checkTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, std::span<const TextureBake> pages,
+					   std::span<const uint32_t> page_of, const BakeSettings& settings, std::size_t points, const RunSettings& run);
 
 // Fills uncovered texels from those around, so that filters and mipmaps do not bleed darkness at the borders of charts.
 

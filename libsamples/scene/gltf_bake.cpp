@@ -5,6 +5,7 @@
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 
 #include <algorithm>
 #include <array>
@@ -22,6 +23,7 @@ namespace
 
 using Document = GltfEditor::Document;
 
+constexpr int kMostSet = 7;        // of texture coordinates
 constexpr std::size_t kTries = 64; // sets of values that a primitive is compared with: with all, a forest would take forever
 
 // Values of a bake that become one attribute.
@@ -151,7 +153,7 @@ public:
 		{
 			addValues(group);
 		}
-		addMeshes(units, made);
+		m_bake.charts.empty() ? addMeshes(units, made) : addCharts(places, units, made);
 		if (!m_bake.visibility.empty())
 		{
 			store(units, made);
@@ -199,6 +201,13 @@ private:
 		for (const GltfPlace& place : places)
 		{
 			const std::size_t mesh = items("nodes")[place.node]["mesh"].get<std::size_t>();
+			const Document& primitives = items("meshes")[mesh]["primitives"];
+			if (place.primitive >= primitives.size() ||
+				numberIn(items("accessors")[numberIn(primitives[place.primitive]["attributes"], "POSITION")], "count") !=
+					place.count)
+			{
+				m_editor.fail("asset.extras.nook", "a bake that split vertices", "the file before it");
+			}
 			const std::size_t node = m_bake.instances == BakeInstances::separate ? place.node : 0;
 			const auto [at, is_new] = known.try_emplace({mesh, node}, units.size());
 			if (is_new)
@@ -537,15 +546,36 @@ private:
 		return factor;
 	}
 
+	// The index of a texture made of a PNG file.
+	std::size_t textureOf(std::string_view png)
+	{
+		const std::size_t image = items("images").size(); // a missing list that items() adds moves the others
+		const std::size_t view = m_editor.addView(Document::object(), png);
+		if (m_sampler == kNoNumber)
+		{
+			m_sampler = items("samplers").size();
+			items("samplers").push_back({{"magFilter", 9729U}, {"minFilter", 9987U}, {"wrapS", 33071U}, {"wrapT", 33071U}});
+		}
+		items("images").push_back({{"name", "visibility"}, {"mimeType", "image/png"}, {"bufferView", view}});
+		items("textures").push_back({{"sampler", m_sampler}, {"source", image}});
+		return items("textures").size() - 1;
+	}
+
+	// Gives a material the texture, and keeps the strength of an earlier one.
+	void setTexture(std::size_t material, std::size_t texture, std::size_t set)
+	{
+		Document& to = items("materials")[material]["occlusionTexture"];
+		Document use{{"index", texture}, {"texCoord", set}};
+		if (to.contains("strength"))
+		{
+			use["strength"] = to["strength"];
+		}
+		to = std::move(use);
+	}
+
 	void addTexture(const std::vector<MeshUnit>& units)
 	{
-		const std::size_t texture = items("textures").size();
-		const std::size_t image = items("images").size(); // a missing list that items() adds moves the others
-		const std::size_t sampler = items("samplers").size();
-		const std::size_t view = m_editor.addView(Document::object(), m_bake.png);
-		items("textures").push_back({{"sampler", sampler}, {"source", image}});
-		items("samplers").push_back({{"magFilter", 9729U}, {"minFilter", 9987U}, {"wrapS", 33071U}, {"wrapT", 33071U}});
-		items("images").push_back({{"name", "visibility"}, {"mimeType", "image/png"}, {"bufferView", view}});
+		const std::size_t texture = textureOf(m_bake.png);
 		std::size_t made = kNoNumber; // for primitives without a material
 		std::set<std::size_t> done;
 		for (const MeshUnit& unit : units)
@@ -564,15 +594,161 @@ private:
 				if (done.insert(material).second)
 				{
 					const auto set = m_set_of_material.find(before);
-					Document& to = items("materials")[material]["occlusionTexture"];
-					Document use{{"index", texture},
-								 {"texCoord",
-								  set != m_set_of_material.end() ? static_cast<uint32_t>(set->second) : m_bake.uv_set.value_or(0)}};
-					if (to.contains("strength"))
+					setTexture(material, texture,
+							   set != m_set_of_material.end() ? static_cast<uint32_t>(set->second) : m_bake.uv_set.value_or(0));
+				}
+			}
+		}
+	}
+
+	// The first set of coordinates that no primitive has.
+	std::size_t freeSet(const std::vector<MeshUnit>& units)
+	{
+		int set = 0;
+		for (const MeshUnit& unit : units)
+		{
+			for (const auto& [primitive, at] : unit.primitives)
+			{
+				set = std::max(set, firstFreeSet(primitiveOf(unit.mesh, primitive)["attributes"]));
+			}
+		}
+		if (set > kMostSet)
+		{
+			m_editor.fail("meshes", "no free set of texture coordinates, with TEXCOORD_" + std::to_string(kMostSet) + " in use",
+						  "at most " + std::to_string(kMostSet) + " of them");
+		}
+		return static_cast<std::size_t>(set);
+	}
+
+	// The materials that primitives without charts have.
+	std::set<std::size_t> materialsOfOthers(const std::vector<MeshUnit>& units, const std::set<std::size_t>& meshes)
+	{
+		std::set<std::pair<std::size_t, std::size_t>> charted;
+		for (const MeshUnit& unit : units)
+		{
+			for (const auto& [primitive, at] : unit.primitives)
+			{
+				charted.emplace(unit.mesh, primitive);
+			}
+		}
+		std::set<std::size_t> materials;
+		for (std::size_t mesh = 0; mesh < items("meshes").size(); ++mesh)
+		{
+			for (std::size_t i = 0; i < items("meshes")[mesh]["primitives"].size(); ++i)
+			{
+				if (meshes.contains(mesh) || !charted.contains({mesh, i}))
+				{
+					materials.insert(numberIn(primitiveOf(mesh, i), "material"));
+				}
+			}
+		}
+		return materials;
+	}
+
+	// An accessor with copies of some elements behind the others.
+	std::size_t extended(std::size_t accessor, const std::vector<uint32_t>& copied)
+	{
+		if (copied.empty())
+		{
+			return accessor;
+		}
+		const GltfValues values(m_editor.file, accessor);
+		std::string bytes;
+		for (std::size_t i = 0; i < values.count() + copied.size(); ++i)
+		{
+			values.append(bytes, i < values.count() ? i : copied[i - values.count()]);
+			padTo4(bytes);
+		}
+		Document item = items("accessors")[accessor];
+		const std::size_t count = values.count() + copied.size();
+		const std::size_t made = m_editor.addAccessor(textIn(item, "type"), numberIn(item, "componentType"), count, bytes);
+		item.erase("sparse");
+		item.update(items("accessors")[made]);
+		items("accessors")[made] = std::move(item);
+		return made;
+	}
+
+	// Gives the primitives of each node coordinates of their own, in copies of meshes at several nodes.
+	void addCharts(std::span<const GltfPlace> places, const std::vector<MeshUnit>& units, GltfBaked& made)
+	{
+		const std::size_t set = freeSet(units);
+		std::set<std::size_t> used = m_bake.others_stay ? meshesOfOthers(units) : std::set<std::size_t>();
+		const std::set<std::size_t> kept = materialsOfOthers(units, used);
+		const std::vector<std::size_t> textures = mapped(m_bake.pages, [this](const std::string& png) { return textureOf(png); });
+		std::map<std::size_t, Document> originals;
+		std::map<std::pair<std::size_t, std::size_t>, Document> split; // attributes and morph targets by primitive
+		std::map<std::tuple<std::size_t, std::size_t, std::vector<uint32_t>>, std::size_t> known; // accessors of indices
+		std::map<std::pair<std::size_t, std::size_t>, std::size_t> materials;                     // by material and page
+		for (const MeshUnit& unit : units)
+		{
+			const Document& original = originals.try_emplace(unit.mesh, items("meshes")[unit.mesh]).first->second;
+			std::size_t mesh = unit.mesh;
+			if (!used.insert(mesh).second)
+			{
+				mesh = items("meshes").size();
+				items("meshes").push_back(original);
+				made.copies += 1;
+			}
+			items("nodes")[unit.nodes.front()]["mesh"] = mesh;
+			for (const auto& [number, at] : unit.primitives)
+			{
+				const GltfCharts& charts = m_bake.charts[static_cast<std::size_t>(at.front() - places.data())];
+				const auto [shared, is_new] = split.try_emplace({unit.mesh, number}, original["primitives"][number]);
+				for (Document& accessor : is_new ? shared->second["attributes"] : m_none)
+				{
+					accessor = extended(accessor.get<std::size_t>(), charts.copied);
+				}
+				for (Document& target : is_new && shared->second.contains("targets") ? shared->second["targets"] : m_none)
+				{
+					for (Document& accessor : target)
 					{
-						use["strength"] = to["strength"];
+						accessor = extended(accessor.get<std::size_t>(), charts.copied);
 					}
-					to = std::move(use);
+				}
+				Document primitive = shared->second;
+				const std::size_t before = numberIn(primitive, "material");
+				std::string uvs;
+				std::for_each(charts.uvs.begin(), charts.uvs.end(), [&uvs](glm::vec2 uv) { appendRaw(uvs, uv); });
+				const std::size_t coordinates = m_editor.addAccessor("VEC2", 5126, charts.uvs.size(), uvs);
+				for (std::size_t i = 0; i <= set; ++i) // sets have no gaps
+				{
+					Document& to = primitive["attributes"][setName(static_cast<int>(i))];
+					to = to.is_null() ? Document(coordinates) : to;
+				}
+				primitive["mode"] = 4U;
+				bool is_first = true;
+				for (std::size_t page = 0; page < charts.pages.size(); ++page)
+				{
+					const std::vector<uint32_t>& indices = charts.pages[page];
+					if (indices.empty())
+					{
+						continue;
+					}
+					const auto [accessor, is_new_list] = known.try_emplace({unit.mesh, number, indices}, 0);
+					if (is_new_list)
+					{
+						const std::string bytes(reinterpret_cast<const char*>(indices.data()), 4 * indices.size());
+						accessor->second = m_editor.addAccessor("SCALAR", 5125, indices.size(), bytes, true);
+					}
+					primitive["indices"] = accessor->second;
+					const auto [material, is_new_material] = materials.try_emplace({before, page}, before);
+					if (is_new_material)
+					{
+						if (before == kNoNumber || kept.contains(before) || !m_textured.insert(before).second)
+						{
+							material->second = items("materials").size();
+							items("materials").push_back(before == kNoNumber ? Document::object() : items("materials")[before]);
+						}
+						setTexture(material->second, textures[page], set);
+					}
+					primitive["material"] = material->second;
+					Document& all = items("meshes")[mesh]["primitives"];
+					if (!std::exchange(is_first, false))
+					{
+						all.push_back(primitive);
+						continue;
+					}
+					all[number] = primitive;
 				}
 			}
 		}
@@ -580,6 +756,9 @@ private:
 
 	GltfEditor& m_editor;
 	const GltfBake& m_bake;
+	Document m_none = Document::array();
+	std::size_t m_sampler = kNoNumber; // of the textures
+	std::set<std::size_t> m_textured;  // materials that got a page
 	bool m_in_color;
 	bool m_colors;
 	std::vector<Channel> m_channels;

@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/json_text.h"
 #include "core/system.h"
+#include "core/words.h"
 
 #include <glm/common.hpp>
 
@@ -104,6 +105,33 @@ std::string escapedUri(const std::string& name)
 
 } // namespace
 
+// In a file that was changed since, the indices of its patch may mean other items: values are then replaced where they are found.
+std::string undoBake(GltfFile& file)
+{
+	Document json = Document::parse(file.text);
+	const Document extras = json.is_object() ? json.value("asset", Document::object()).value("extras", Document()) : Document();
+	if (!extras.is_object() || !extras.contains(kRecord) || !extras[kRecord].is_object())
+	{
+		return {};
+	}
+	const Document& record = extras[kRecord];
+	const bool is_same = textIn(record, "state") == stateOf(json);
+	eraseIn(json["asset"], "extras", kRecord);
+	try
+	{
+		json = is_same ? json.patch(record.value("undo", Document::array())) : std::move(json);
+	}
+	catch (const Document::exception&)
+	{
+		refuseInput(file.path + ": asset.extras.nook.undo", "no patch of this file", "what nook bake wrote");
+	}
+	file.text = jsonLine(json);
+	file.json = nlohmann::json::parse(file.text); // anybody may have written the patch
+	file.buffers.clear();
+	file.decoded.clear();
+	return is_same ? std::string() : textIn(record, "to");
+}
+
 std::size_t numberIn(const Document& item, const std::string& field, std::size_t otherwise)
 {
 	const auto found = item.find(field);
@@ -116,17 +144,21 @@ std::string textIn(const Document& item, const char* field)
 	return found != item.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-GltfEditor::GltfEditor(const GltfFile& of, const std::string& output) : file(of), json(Document::parse(of.text))
+GltfEditor::GltfEditor(const GltfFile& of, const std::string& output) : file(of)
 {
 	const std::string ending = endingOf(output);
 	m_to_binary = ending == ".glb" || (ending != ".gltf" && file.is_binary);
 	assert(m_to_binary || !file.is_binary);
 	checkGltf(file);
+	json = Document::parse(of.text);
 	if (!json["asset"].value("extras", Document::object()).is_object())
 	{
 		fail("asset.extras", "no object", "one, or nothing", ExitCode::unsupported);
 	}
-	undo();
+	m_has_lines = file.text.find('\n') < file.text.size() - 1; // some programs end their one line
+	earlier = undoBake(file);
+	json = Document::parse(file.text);
+	checkGltf(file);
 	decompress();
 	if (!compression.empty() || m_to_binary != file.is_binary)
 	{
@@ -147,37 +179,6 @@ Document& GltfEditor::items(const char* name)
 	Document& list = json[name];
 	list = list.is_null() ? Document::array() : std::move(list);
 	return list;
-}
-
-// Undoes an earlier bake. In a file that was changed since, the indices of its patch may mean other items: values are then replaced
-// where they are found.
-void GltfEditor::undo()
-{
-	const Document extras = json["asset"].value("extras", Document::object());
-	if (!extras.contains(kRecord) || !extras[kRecord].is_object())
-	{
-		return;
-	}
-	const Document& record = extras[kRecord];
-	const bool is_same = textIn(record, "state") == stateOf(json);
-	eraseIn(json["asset"], "extras", kRecord);
-	if (!is_same)
-	{
-		earlier = textIn(record, "to");
-		return;
-	}
-	try
-	{
-		json = json.patch(record.value("undo", Document::array()));
-	}
-	catch (const Document::exception&)
-	{
-		fail("asset.extras.nook.undo", "no patch of this file", "what nook bake wrote");
-	}
-	file.json = nlohmann::json::parse(jsonLine(json)); // anybody may have written the patch
-	file.buffers.clear();
-	file.decoded.clear();
-	checkGltf(file);
 }
 
 void GltfEditor::decompress()
@@ -273,13 +274,14 @@ std::size_t GltfEditor::addView(Document view, std::string_view bytes)
 	return items("bufferViews").size() - 1;
 }
 
-std::size_t GltfEditor::addAccessor(const char* type, uint64_t component, std::size_t count, const std::string& bytes)
+std::size_t GltfEditor::addAccessor(const std::string& type, uint64_t component, std::size_t count, const std::string& bytes,
+									bool is_indices)
 {
-	const std::size_t size = bytes.size() / count;
+	const std::size_t size = is_indices ? 0 : bytes.size() / count;
 	const auto [known, is_new] = m_view_of_size.try_emplace(size, 0);
 	if (is_new)
 	{
-		known->second = addView({{"byteStride", size}, {"target", 34962U}}, {});
+		known->second = addView(is_indices ? Document{{"target", 34963U}} : Document{{"byteStride", size}, {"target", 34962U}}, {});
 	}
 	std::string& to = m_added[known->second - m_view_before];
 	if (bytes.size() > kMaxFileBytes - std::min(kMaxFileBytes, to.size()))
@@ -379,10 +381,9 @@ std::string GltfEditor::take(const std::string& output, const Document& record)
 		made["state"] = stateOf(json);
 		made["undo"] = undo;
 	}
-	const bool lines = file.text.find('\n') < file.text.size() - 1; // some programs end their one line
-	return m_to_binary ? glbContainer(jsonLine(json), chunk(), file.others, file.path)
-		   : lines     ? jsonFile(json)
-					   : jsonLine(json) + "\n";
+	return m_to_binary   ? glbContainer(jsonLine(json), chunk(), file.others, file.path)
+		   : m_has_lines ? jsonFile(json)
+						 : jsonLine(json) + "\n";
 }
 
 std::string& GltfEditor::chunk()

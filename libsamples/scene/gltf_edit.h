@@ -41,9 +41,10 @@ public:
 	// A list of the document, made if it is missing, which may move others.
 	Document& items(const char* name);
 
-	// Return the index. Accessors go to a view of elements of their size.
+	// Return the index. Accessors go to a view of elements of their size, and indices to one of theirs.
 	std::size_t addView(Document view, std::string_view bytes);
-	std::size_t addAccessor(const char* type, uint64_t component, std::size_t count, const std::string& bytes);
+	std::size_t addAccessor(const std::string& type, uint64_t component, std::size_t count, const std::string& bytes,
+							bool is_indices = false);
 	std::size_t bytesAdded() const;
 
 	// The file's bytes, with a record of the bake that allows to undo it (null: none). Call once.
@@ -55,7 +56,6 @@ public:
 	std::string earlier;     // target of an earlier bake that is still there
 
 private:
-	void undo();
 	void decompress();
 	void setBounds(std::size_t accessor);
 	void gather();
@@ -65,6 +65,7 @@ private:
 
 	Document m_before; // to undo the bake
 	bool m_to_binary = false;
+	bool m_has_lines = false;                          // the file's JSON
 	std::optional<std::string> m_gathered;             // the only buffer
 	std::size_t m_view_before = 0;                     // views of the file
 	std::vector<std::string> m_added;                  // bytes of the views behind them
@@ -90,12 +91,22 @@ enum class BakeInstances
 	attribute, // the mean, and a factor for each node or instance
 };
 
+// How a primitive is split between charts of a texture: the vertices that the file has stay, copies follow them.
+struct GltfCharts
+{
+	std::vector<uint32_t> copied;             // the vertex that each further one copies
+	std::vector<glm::vec2> uvs;               // of all
+	std::vector<std::vector<uint32_t>> pages; // indices of the triangles on each page of the texture
+};
+
 struct GltfBake : GlbBake
 {
 	BakeTarget target = BakeTarget::visibility;
 	std::string attribute; // of BakeTarget::texcoord and custom: TEXCOORD_2, _AO
 	BakeInstances instances = BakeInstances::separate;
 	std::optional<uint32_t> uv_set; // coordinates in the file that `png` uses, in place of `uvs`
+	std::vector<GltfCharts> charts; // for each place; a set of coordinates for them, and a page of the texture each
+	std::vector<std::string> pages; // of the texture, as PNG
 	bool others_stay = false;       // nodes without a place keep their meshes without values
 	nlohmann::ordered_json record;  // asset.extras.nook: what was baked and how, "to" for the target; null: none
 };

@@ -56,6 +56,9 @@ GltfFile openGlb(std::string bytes, const std::string& path);
 // Missing and short buffer files are errors that name them.
 void checkGltf(GltfFile& file);
 
+// Takes an earlier bake out of the file's JSON. Returns its target, with the values still there, if the file has changed since.
+std::string undoBake(GltfFile& file);
+
 // An item's extension by name; none if absent.
 std::optional<JsonValue> extensionOf(const JsonValue& item, std::string_view name);
 
@@ -116,7 +119,8 @@ public:
 	double number(std::size_t i, std::size_t component) const;
 	glm::dvec2 vec2(std::size_t i) const;
 	glm::dvec3 vec3(std::size_t i) const;
-	uint32_t index(std::size_t i) const; // for unsigned integers
+	uint32_t index(std::size_t i) const;                  // for unsigned integers
+	void append(std::string& bytes, std::size_t i) const; // an element as it is stored
 
 private:
 	const char* elementAt(std::size_t i) const; // null: zeros

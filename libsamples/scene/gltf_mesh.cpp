@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <tuple>
 
@@ -395,10 +396,20 @@ private:
 										   static_cast<std::size_t>(&primitive - m_meshes[*mesh].data()),
 										   primitive.positions->count(),
 										   made.first_triangle,
+										   {},
+										   *mesh,
+										   false,
 										   {}});
 			}
 			triangles(primitive, m_world_from_file * node.world, pose);
 			made.triangle_count = m_level.triangles.size() - made.first_triangle;
+			if (m_file.second_set == kPlacesSet && primitive.triangleCount() > 0)
+			{
+				m_source.places.back().mirrored = m_mirrored;
+				m_source.places.back().triangles.resize(made.triangle_count);
+				std::iota(m_source.places.back().triangles.begin(), m_source.places.back().triangles.end(),
+						  static_cast<uint32_t>(made.first_triangle));
+			}
 			if (primitive.uvs == nullptr && !primitive.ramp && made.triangle_count > 0 &&
 				m_source.materials[primitive.material].mask >= 0)
 			{

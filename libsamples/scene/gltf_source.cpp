@@ -317,6 +317,10 @@ LevelSource readGltf(const std::string& path, const LoadSettings& settings, Leve
 	GltfFile file = openGltf(path);
 	file.settings = settings;
 	file.second_set = second_set;
+	if (settings.undo_bake)
+	{
+		undoBake(file);
+	}
 	checkGltf(file);
 	LevelSource source;
 	addFile(source.files, path);

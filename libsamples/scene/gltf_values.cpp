@@ -178,6 +178,12 @@ glm::dvec3 GltfValues::vec3(std::size_t i) const
 	return {number(i, 0), number(i, 1), number(i, 2)};
 }
 
+void GltfValues::append(std::string& bytes, std::size_t i) const
+{
+	const char* const at = elementAt(i);
+	at == nullptr ? bytes.append(m_size, '\0') : bytes.append(at, m_size);
+}
+
 uint32_t GltfValues::index(std::size_t i) const
 {
 	const char* const at = elementAt(i);

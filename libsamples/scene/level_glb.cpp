@@ -203,11 +203,16 @@ private:
 	{
 		m_current += 1;
 		std::vector<uint32_t> vertices;
+		std::vector<uint32_t> triangles;
 		std::size_t first_triangle = mesh.first_triangle;
 		const std::size_t first_index = m_indices.size() / sizeof(uint32_t);
 		for (std::size_t t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t)
 		{
 			first_triangle = vertices.empty() ? t : first_triangle;
+			if (m_level.materials[t] == material)
+			{
+				triangles.push_back(static_cast<uint32_t>(t));
+			}
 			for (int corner = 0; corner < 3 && m_level.materials[t] == material; ++corner)
 			{
 				appendRaw(m_indices, slotOf(m_level.triangles[t][corner], vertices));
@@ -242,6 +247,8 @@ private:
 			place.primitive = number;
 			place.count = vertices.size();
 			place.triangle = first_triangle;
+			place.triangles = std::move(triangles);
+			place.mesh = m_meshes.size();
 			for (std::size_t v = 0; v < vertices.size(); ++v)
 			{
 				place.vertices.emplace_back(static_cast<uint32_t>(v), vertices[v]);

@@ -411,7 +411,8 @@ std::string keyOf(std::span<const PlacedLevel> levels, const LoadSettings& setti
 	}
 	for (const double value :
 		 {settings.unit_m, static_cast<double>(settings.up), settings.strict ? 1.0 : 0.0, static_cast<double>(settings.max_texels),
-		  settings.allow_outside ? 1.0 : 0.0, static_cast<double>(settings.pose), static_cast<double>(settings.tr)})
+		  settings.allow_outside ? 1.0 : 0.0, settings.undo_bake ? 1.0 : 0.0, static_cast<double>(settings.pose),
+		  static_cast<double>(settings.tr)})
 	{
 		key.add(value);
 	}
@@ -497,7 +498,7 @@ std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings
 }
 
 std::vector<GltfPlace> loadPlaces(const std::string& name, const LoadSettings& settings, const Level& level,
-								  std::span<const std::string> receivers, const RunSettings& run)
+								  std::span<const std::string> receivers, const RunSettings& run, Level* as_read)
 {
 	const ProgressCounter stage(run.progress, "places");
 	LevelSource source;
@@ -514,7 +515,15 @@ std::vector<GltfPlace> loadPlaces(const std::string& name, const LoadSettings& s
 						  { return place.vertices.empty() || chosen[place.triangle] != kept; });
 		}
 	}
+	if (as_read != nullptr)
+	{
+		*as_read = again;
+	}
 	const std::vector<uint32_t> before = cleanAgain(again, name, settings, level, run);
+	if (as_read != nullptr)
+	{
+		return std::move(source.places);
+	}
 	std::vector<uint32_t> now(positions.size(), UINT32_MAX);
 	for (uint32_t i = 0; i < before.size(); ++i)
 	{

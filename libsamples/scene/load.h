@@ -71,6 +71,7 @@ struct FileSettings
 struct LoadSettings : FileSettings
 {
 	std::vector<std::string> ignore; // patterns of parts that are left out (chosenTriangles)
+	bool undo_bake = false;          // a glTF file as it was before nook bake, if it has not changed since
 };
 
 struct LoadedLevel

@@ -68,6 +68,9 @@ struct GltfPlace
 	std::size_t primitive = 0;                           // of the node's mesh
 	std::size_t count = 0;                               // vertices of the primitive, used or not
 	std::size_t triangle = 0;                            // its first one of the level as read
+	std::vector<uint32_t> triangles;                     // all of them, in the order of the file
+	std::size_t mesh = 0;                                // of the node
+	bool mirrored = false;                               // the level has its corners in the other order
 	std::vector<std::pair<uint32_t, uint32_t>> vertices; // number in the primitive, and in the level; each used one once
 };
 
@@ -207,8 +210,9 @@ std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings
 
 // Where the vertices of `level`, loaded from a glTF file, are in that file. A vertex of dropped triangles alone gets the level's
 // vertex at its position, with the nearest normal; none if there is none. Reads the file again, as loadSecondUvs() does.
-// `receivers`: patterns of the places to return (chosenTriangles); empty: all.
+// `receivers`: patterns of the places to return (chosenTriangles); empty: all. `as_read`: becomes the level before it was cleaned,
+// which the vertices then belong to.
 std::vector<GltfPlace> loadPlaces(const std::string& name, const LoadSettings& settings, const Level& level,
-								  std::span<const std::string> receivers, const RunSettings& run);
+								  std::span<const std::string> receivers, const RunSettings& run, Level* as_read = nullptr);
 
 } // namespace nook

@@ -13,6 +13,7 @@
 #include "core/math.h"
 #include "core/system.h"
 #include "core/text.h"
+#include "core/words.h"
 #include "core/work_units.h"
 #include "format/pattern_file.h"
 #include "scene/gltf_edit.h"
@@ -658,10 +659,12 @@ Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& fa
 	facts.number("texel_size_m", unwrapped.texel_m);
 	facts.number("coverage", unwrapped.coverage);
 	facts.number("stretch", unwrapped.stretch);
-	facts.line("unwrapped: " + std::to_string(unwrapped.charts) + " charts on " + std::to_string(unwrapped.pages) +
-			   " pages, texels of " + roundedText(unwrapped.texel_m, 3) + " m, coverage " + roundedText(unwrapped.coverage, 3) +
+	facts.line("unwrapped: " + std::to_string(unwrapped.charts) + " charts on " + counted(unwrapped.pages, "page", "pages") +
+			   ", texels of " + roundedText(unwrapped.texel_m, 3) + " m, coverage " + roundedText(unwrapped.coverage, 3) +
 			   ", stretch " + roundedText(unwrapped.stretch, 3));
-	addTexture(facts, pages, baked.bytes_added);
+	addTexture(facts, pages,
+			   std::accumulate(in.pages.begin(), in.pages.end(), std::size_t{0},
+							   [](std::size_t all, const std::string& png) { return all + png.size(); }));
 	addCheck(facts, options, check, "points of the surface");
 	addFile(facts, input, baked);
 	if (!options.outputs.files.empty())

@@ -607,7 +607,7 @@ std::vector<ChartPlace> place(std::span<const FlatChart> flat, std::span<const S
 	const auto refuseSize = [&]
 	{
 		refuseInput(name + ": unwrap",
-					std::to_string(scaled.size()) + " charts that " + std::to_string(settings.pages) + " pages of " +
+					std::to_string(scaled.size()) + " charts that " + counted(settings.pages, "page", "pages") + " of " +
 						std::to_string(settings.size_px) + " texels do not hold",
 					"larger texels, a larger texture, more pages or a smaller margin");
 	};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Helpers of those who read files: lower case, numbers of bytes, errors.
+// Helpers of those who read files: lower case, counts, numbers of bytes, errors.
 #pragma once
 
 #include "core/error.h"
@@ -22,6 +22,12 @@ inline std::string lowered(std::string_view text)
 	std::string lower(text);
 	std::transform(lower.begin(), lower.end(), lower.begin(), lowerCase);
 	return lower;
+}
+
+// "1 page", "2 pages".
+inline std::string counted(std::size_t count, const std::string& one, const std::string& many)
+{
+	return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
 // An unsigned number of `size` bytes.

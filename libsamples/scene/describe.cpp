@@ -4,6 +4,7 @@
 #include "core/costs.h"
 #include "core/math.h"
 #include "core/text.h"
+#include "core/words.h"
 #include "scene/gbuffer_file.h"
 #include "scene/level_glb.h"
 #include "scene/load_parts.h"
@@ -24,11 +25,6 @@ namespace nook
 {
 namespace
 {
-
-std::string counted(std::size_t count, const std::string& one, const std::string& many)
-{
-	return std::to_string(count) + " " + (count == 1 ? one : many);
-}
 
 std::string pointText(glm::dvec3 p)
 {

@@ -223,7 +223,7 @@ fails 1 "--up: found 'w'" info kept.obj --up w
 fails 1 '--domain' info kept.obj --domain disk
 fails 1 '--strict' info kept.json --strict
 printf 'v 0 0 0\nf 1 2 3\n' >kept_bad.obj
-fails 3 'kept_bad.obj: found ' info kept_bad.obj
+fails 3 'kept_bad.obj: line 2: found ' info kept_bad.obj
 
 # Invalid files: every one is rejected with its name, and none ends with a signal.
 bad()

@@ -321,7 +321,7 @@ private:
 
 	using Merge = std::tuple<double, uint32_t, uint32_t>; // cost, clusters
 
-	// What merging costs, if it is allowed.
+	// The cost of a merge, if it is allowed.
 	std::optional<double> costOf(uint32_t a, uint32_t b, double border) const
 	{
 		const double area = m_clusters[a].area + m_clusters[b].area;

@@ -275,7 +275,7 @@ unwrapped()
 	checks=$((checks + 1))
 	python3 "$source/tests/unwrapped.py" "$@" >../log 2>&1 || problem "unwrapped $*: $(cat ../log)"
 }
-works '^unwrapped: 2 charts on 1 pages, texels of 0.0[0-9]* m, coverage 0.[3-9][0-9]*, stretch 1' bake kept_two.gltf --radius 1 --rays 8 --unwrap --texture 64 -o kept_u.gltf --threads 1
+works '^unwrapped: 2 charts on 1 page, texels of 0.0[0-9]* m, coverage 0.[3-9][0-9]*, stretch 1' bake kept_two.gltf --radius 1 --rays 8 --unwrap --texture 64 -o kept_u.gltf --threads 1
 unwrapped kept_two.gltf kept_u.gltf
 works '"shared_meshes": 1' bake kept_u.gltf --radius 1 --rays 8 --unwrap --texture 64 -o kept_v.gltf --threads 2 --json -
 checks=$((checks + 1))
@@ -291,7 +291,7 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 2 0\nf 1 2 3\nf 1 2 3\nf 3 2 1\n
 works '"pages": 1,' bake kept_soup.obj --radius 1 --rays 8 --unwrap --texture 64 -o b.glb --json -
 sed 's/"TEXCOORD_0": 1/"TEXCOORD_0": 1, "TEXCOORD_1": 1, "TEXCOORD_2": 1, "TEXCOORD_3": 1, "TEXCOORD_4": 1, "TEXCOORD_5": 1, "TEXCOORD_6": 1, "TEXCOORD_7": 1/' kept_two.gltf >kept_full.gltf
 fails 3 'kept_full.gltf: meshes: found no free set of texture coordinates' bake kept_full.gltf --radius 1 --unwrap -o kept_full.gltf
-fails 3 'kept_two.gltf: unwrap: found 2 charts that 1 pages of 16 texels do not hold' bake kept_two.gltf --radius 1 --unwrap --texture 16 --margin 8 -o b.glb
+fails 3 'kept_two.gltf: unwrap: found 2 charts that 1 page of 16 texels do not hold' bake kept_two.gltf --radius 1 --unwrap --texture 16 --margin 8 -o b.glb
 fails 1 '--texel-size: found without' bake kept_two.gltf --radius 1 --texel-size 1 -o b.glb
 fails 1 '--pages: found without' bake kept_two.gltf --radius 1 --texture 64 --pages 2 -o b.glb
 fails 1 '--margin: found without' bake kept_two.gltf --radius 1 --texture 64 --margin 2 -o b.glb

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs a function in a worker process with limits on memory and time, and returns the values it writes.
 //
-// Readers of other people's formats crash, loop and ask for gigabytes on damaged or hostile files. A separate process turns all of that
-// into one error line. It is a separate program, not a fork, so that it shares no locks, threads or memory, and so that nook does not
-// load the libraries it links.
+// Readers of other people's formats crash, loop and ask for gigabytes on damaged or hostile files. A separate process turns all of
+// that into one error line. It is a separate program, not a fork, so that it shares no locks, threads or memory, and so that nook
+// does not load the libraries it links.
 #pragma once
 
 #include "core/value_stream.h"

@@ -117,8 +117,8 @@ public:
 	posix_spawnattr_t attributes{};
 };
 
-// Inherits the environment and, unless set, asks for huge heap pages: a large level then takes fewer page faults. (glibc 2.35 or newer;
-// others ignore the variable.)
+// Inherits the environment and, unless set, asks for huge heap pages: a large level then takes fewer page faults. (glibc 2.35 or
+// newer; others ignore the variable.)
 std::vector<char*> environment()
 {
 	static std::string pages = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";

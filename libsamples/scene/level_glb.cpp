@@ -49,7 +49,8 @@ public:
 		}
 		made = static_cast<int>(materials.size());
 		const Material& material = m_level.material_list[index];
-		Json item{{"name", material.name}, {"pbrMetallicRoughness", {{"metallicFactor", 0.0}}}}; // metal is black without surroundings
+		Json item{{"name", material.name},
+				  {"pbrMetallicRoughness", {{"metallicFactor", 0.0}}}}; // metal is black without surroundings
 		if (material.alpha_mode != AlphaMode::opaque)
 		{
 			item["alphaMode"] = material.alpha_mode == AlphaMode::mask ? "MASK" : "BLEND";

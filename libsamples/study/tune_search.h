@@ -103,7 +103,7 @@ struct TuneSearchSettings
 	}
 };
 
-// What is known of a candidate.
+// A candidate and what is known of it.
 struct Tried
 {
 	std::size_t candidate = 0;
@@ -199,7 +199,7 @@ public:
 	void choose(TuneSearch& search) const;
 
 	// Returns the best candidate that was not measured in full, but is expected to reach the goal and to be better than the pick.
-	// None if there is no pick.
+	// Without a pick there is none.
 	std::optional<std::size_t> expectedBetter(const TuneSearch& search) const;
 
 	// Returns a candidate that was not measured in full, and is expected to be the fastest of those that are like the pick, or the

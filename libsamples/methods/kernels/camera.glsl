@@ -66,9 +66,9 @@ ivec2 nookInside(ivec2 pixel)
 // holds depth. Clamped before it becomes an int: close to the camera a radius may span more pixels than an int can count.
 ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 {
-	float x = floor(float(pixel.x) + 0.5f + offset.x * scale.x);
-	float y = floor(float(pixel.y) + 0.5f - offset.y * scale.y);
-	return ivec2(int(clamp(x, float(nook.first.x), float(nook.last.x))), int(clamp(y, float(nook.first.y), float(nook.last.y))));
+	float x = clamp(float(pixel.x) + 0.5f + offset.x * scale.x, float(nook.first.x), float(nook.last.x));
+	float y = clamp(float(pixel.y) + 0.5f - offset.y * scale.y, float(nook.first.y), float(nook.last.y));
+	return ivec2(int(floor(x)), int(floor(y))); // rounded last: GPUs convert and round down in one instruction
 }
 
 // The tangent plane of a pixel for nookPlaneRise, with the clip-space w of the pixel. x, y: how far the line of sight one pixel to

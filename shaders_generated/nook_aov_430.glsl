@@ -135,35 +135,13 @@ vec2 nookShare()
 	return vec2(height, height * float(nook_polygon.w >> 8) / 8.0);
 }
 
-// The upper 12 bits of each component: the product of two of them is exact.
-vec3 nookHead(vec3 a)
-{
-	return vec3(uintBitsToFloat(floatBitsToUint(a.x) & 0xfffff000u), uintBitsToFloat(floatBitsToUint(a.y) & 0xfffff000u),
-		uintBitsToFloat(floatBitsToUint(a.z) & 0xfffff000u));
-}
-
-// a * b - c * d for numbers in two parts (the upper bits and the rest), accurate to 2^-36 of the larger product. Swapping a
-// with c and b with d gives exactly the negative.
-float nookProducts(vec2 a, vec2 b, vec2 c, vec2 d)
-{
-	float low = (a.x * b.y + a.y * b.x + a.y * b.y) - (c.x * d.y + c.y * d.x + c.y * d.y);
-	return (a.x * b.x - c.x * d.x) + low;
-}
-
-// Cross product whose direction is accurate even where it nearly cancels.
+// Cross product whose direction is accurate even where it nearly cancels. Where the language has fma(), which rounds once, products
+// and their rounding are subtracted (W. Kahan's difference of products); otherwise factors are split.
 vec3 nookCross(vec3 a, vec3 b)
 {
-	vec3 ha = nookHead(a);
-	vec3 hb = nookHead(b);
-	vec3 la = a - ha;
-	vec3 lb = b - hb;
-	vec2 ax = vec2(ha.x, la.x);
-	vec2 ay = vec2(ha.y, la.y);
-	vec2 az = vec2(ha.z, la.z);
-	vec2 bx = vec2(hb.x, lb.x);
-	vec2 by = vec2(hb.y, lb.y);
-	vec2 bz = vec2(hb.z, lb.z);
-	return vec3(nookProducts(ay, bz, az, by), nookProducts(az, bx, ax, bz), nookProducts(ax, by, ay, bx));
+	vec3 right = vec3(a.z * b.y, a.x * b.z, a.y * b.x);
+	vec3 lost = vec3(fma(a.z, b.y, -right.x), fma(a.x, b.z, -right.y), fma(a.y, b.x, -right.z));
+	return vec3(fma(a.y, b.z, -right.x), fma(a.z, b.x, -right.y), fma(a.x, b.y, -right.z)) - lost;
 }
 
 #ifdef NOOK_CHOOSE_FACES
@@ -520,92 +498,38 @@ float nookLift(float height, float two_sided, float bias, float facing)
 	return out_of - height;
 }
 
-// The upper 12 bits of each component: the product of two of them is exact.
-vec3 nookHead(vec3 a)
-{
-	return vec3(uintBitsToFloat(floatBitsToUint(a.x) & 0xfffff000u), uintBitsToFloat(floatBitsToUint(a.y) & 0xfffff000u),
-		uintBitsToFloat(floatBitsToUint(a.z) & 0xfffff000u));
-}
-
-// a * b - c * d for numbers in two parts (the upper bits and the rest), accurate to 2^-36 of the larger product. Swapping a
-// with c and b with d gives exactly the negative.
-float nookProducts(vec2 a, vec2 b, vec2 c, vec2 d)
-{
-	float low = (a.x * b.y + a.y * b.x + a.y * b.y) - (c.x * d.y + c.y * d.x + c.y * d.y);
-	return (a.x * b.x - c.x * d.x) + low;
-}
-
-// Cross product whose direction is accurate even where it nearly cancels.
+// Cross product whose direction is accurate even where it nearly cancels. Where the language has fma(), which rounds once, products
+// and their rounding are subtracted (W. Kahan's difference of products); otherwise factors are split.
 vec3 nookCross(vec3 a, vec3 b)
 {
-	vec3 ha = nookHead(a);
-	vec3 hb = nookHead(b);
-	vec3 la = a - ha;
-	vec3 lb = b - hb;
-	vec2 ax = vec2(ha.x, la.x);
-	vec2 ay = vec2(ha.y, la.y);
-	vec2 az = vec2(ha.z, la.z);
-	vec2 bx = vec2(hb.x, lb.x);
-	vec2 by = vec2(hb.y, lb.y);
-	vec2 bz = vec2(hb.z, lb.z);
-	return vec3(nookProducts(ay, bz, az, by), nookProducts(az, bx, ax, bz), nookProducts(ax, by, ay, bx));
+	vec3 right = vec3(a.z * b.y, a.x * b.z, a.y * b.x);
+	vec3 lost = vec3(fma(a.z, b.y, -right.x), fma(a.x, b.z, -right.y), fma(a.y, b.x, -right.z));
+	return vec3(fma(a.y, b.z, -right.x), fma(a.z, b.x, -right.y), fma(a.x, b.y, -right.z)) - lost;
 }
 
-// Angle of (x, y) with y >= 0, in [0, pi]; 0 for (0, 0). Accurate to 2e-7: the polynomial interpolates atan(t) / t in t^2 at
-// nine Chebyshev nodes, which is off by 2e-8. It gives the same result on every GPU, which atan does not guarantee.
-float nookAngle(float y, float x)
+// acos(x) / sqrt(1 - x * x) for x in [0, 1]: the angle between two unit vectors over its sine, from its cosine. Times the sine, the
+// polynomial is off by 4e-7. It gives the same result on every GPU, which acos does not guarantee.
+float nookArc(float x)
 {
-	float across = abs(x);
-	float most = max(y, across);
-	if (!(most > 0.0f))
-	{
-		return 0.0f;
-	}
-	float t = min(y, across) / most;
-	float u = t * t;
-	float p = 0.0421376236f + u * (-0.0157312491f + u * 0.0027662835f);
-	p = -0.141977978f + u * (0.106183706f + u * (-0.0745685483f + u * p));
-	p = t * (0.999999982f + u * (-0.333330367f + u * (0.19991872f + u * p)));
-	if (y > across)
-	{
-		p = 1.57079633f - p;
-	}
-	if (x < 0.0f)
-	{
-		p = 3.14159265f - p;
-	}
-	return p;
+	float p = 0.522759580f + x * (-0.345475831f + x * (0.152677448f - x * 0.0317200786f));
+	return 1.57079595f + x * (-0.999943104f + x * (0.783984789f + x * (-0.653083218f + x * p)));
 }
 
-// Direction to the point where an edge crosses the tangent plane of the receiver: from a at height ha to b at height hb, on
-// opposite sides of the plane. c: cross product of the edge, squared: its squared length. The point is interpolated between a
-// and b, or where the plane of the edge is steep enough lies on the line that both planes share, which rounding of distant
-// corners does not move.
-vec3 nookNode(vec3 a, float ha, vec3 b, float hb, float squared, vec3 c, vec3 n)
+// A vector times this has unit length, if it is longer than 1e-15.
+float nookUnit(vec3 a)
 {
-	vec3 between = (a * hb - b * ha) / (hb - ha);
-	vec3 node = cross(n, c);
-	if (dot(node, node) > 1e-4f * squared && squared > 0.0f)
-	{
-		node = node / sqrt(squared);
-		return dot(node, between) < 0.0f ? -node : node;
-	}
-	return between;
+	return 1.0f / sqrt(max(dot(a, a), 1e-30f));
 }
 
-// Angle from a to b around the given axis, in (-pi/2, pi]; below 0 where rounding has swapped two points that should be in that
-// order. Beyond a right angle the sign is not due to rounding, except for a receiver close to the polygon, where it could only
-// be guessed.
+// Angle from a to b, unit vectors in a plane with the normal `axis`, in (-pi/2, pi]; below 0 where rounding has swapped two points
+// that should be in that order. Beyond a right angle the sign is not due to rounding, except for a receiver close to the polygon,
+// where it could only be guessed.
 float nookTurn(vec3 a, vec3 b, vec3 axis)
 {
-	vec3 c = cross(a, b);
-	float x = dot(a, b);
-	float angle = nookAngle(sqrt(dot(c, c)), x);
-	if (x > 0.0f && dot(c, axis) < 0.0f)
-	{
-		return -angle;
-	}
-	return angle;
+	float sine = dot(cross(a, b), axis);
+	float cosine = dot(a, b);
+	float arc = nookArc(abs(cosine));
+	return cosine < 0.0f ? 3.14159265f - arc * abs(sine) : arc * sine;
 }
 
 // AOV eq. 4 for the part of the polygon above the tangent plane of a receiver with the unit normal n, in [0, 1]. side: 1 where
@@ -613,10 +537,14 @@ float nookTurn(vec3 a, vec3 b, vec3 axis)
 // It walks around the edges once. The tangent plane cuts the polygon at pairs of an exit and an entry, and the edge along the
 // cut is added for each pair. A convex polygon has one pair; rounding may add more close to the tangent plane, and each gets
 // its edge.
+// The direction in which an edge crosses the tangent plane is interpolated between those of its ends. Where they are nearly
+// opposite it lies on the line that the tangent plane and the plane of the edge share, unless both planes nearly are one: then
+// any direction between the ends will do.
 float nookFormFactor(int count, vec3 n, float side)
 {
 	vec3 a = nookCorner(count - 1);
-	float ha = dot(a, n);
+	vec3 from = a * nookUnit(a); // the direction of a, and its sine of elevation
+	float ha = dot(from, n);
 	float edges = 0.0f;
 	float cuts = 0.0f;
 	vec3 exit = vec3(0.0f, 0.0f, 0.0f);  // the last exit
@@ -626,43 +554,64 @@ float nookFormFactor(int count, vec3 n, float side)
 	for (int i = 0; i < count; ++i)
 	{
 		vec3 b = nookCorner(i);
-		float hb = dot(b, n);
+		vec3 to = b * nookUnit(b);
+		float hb = dot(to, n);
 		if (ha > 0.0f || hb > 0.0f)
 		{
-			vec3 c = nookCross(b, a);
-			float squared = dot(c, c);
-			float angle = 0.0f;
-			if (ha > 0.0f && hb > 0.0f)
+			vec3 first = from;
+			vec3 last = to;
+			float cosine = dot(from, to);
+			bool opposite = cosine < -0.95f;
+			vec3 exact = vec3(0.0f, 0.0f, 0.0f);
+			if (opposite)
 			{
-				angle = nookAngle(sqrt(squared), dot(a, b));
+				exact = nookCross(b, a);
 			}
-			if (ha <= 0.0f)
+			if (ha <= 0.0f || hb <= 0.0f)
 			{
-				vec3 node = nookNode(a, ha, b, hb, squared, c, n);
-				angle = nookTurn(b, node, c);
-				if (exits > 0)
+				vec3 node = from * abs(hb) + to * abs(ha);
+				if (opposite)
 				{
-					cuts += nookTurn(node, exit, n * side);
+					vec3 line = cross(n, exact);
+					if (dot(line, line) > 1e-4f * dot(exact, exact))
+					{
+						node = dot(line, node) < 0.0f ? -line : line;
+					}
+				}
+				node = node * nookUnit(node);
+				if (hb <= 0.0f)
+				{
+					exit = node;
+					exits = 1;
+					last = node;
 				}
 				else
 				{
-					entry = node;
-					entries = 1;
+					if (exits > 0)
+					{
+						cuts += nookTurn(node, exit, n * side);
+					}
+					else
+					{
+						entry = node;
+						entries = 1;
+					}
+					first = node;
 				}
+				cosine = dot(first, last);
 			}
-			if (hb <= 0.0f)
+			vec3 c = cross(last, first);
+			float term = dot(n, c) * nookArc(abs(cosine));
+			if (cosine < 0.0f)
 			{
-				exit = nookNode(a, ha, b, hb, squared, c, n);
-				exits = 1;
-				angle = nookTurn(exit, a, c);
+				c = opposite ? exact : c;
+				term = 3.14159265f * dot(n, c) * nookUnit(c) - term;
 			}
-			if (squared > 0.0f)
-			{
-				edges += dot(n, c) / sqrt(squared) * angle;
-			}
+			edges += term;
 		}
 		a = b;
 		ha = hb;
+		from = to;
 	}
 	if (entries > 0 && exits > 0)
 	{
@@ -685,18 +634,15 @@ bool nookReaches(float height, float two_sided, float reach, float bias)
 float nookFalloff(int count, vec3 front, float height, float reach, float share)
 {
 	float least = 1.0f - share;
-	float g = clamp(1.0f - height / reach, 0.0f, 1.0f);
+	float scale = 1.0f / reach;
+	float g = clamp(1.0f - height * scale, 0.0f, 1.0f);
 	vec3 a = nookCorner(count - 1);
 	for (int i = 0; i < count; ++i)
 	{
 		vec3 b = nookCorner(i);
 		vec3 inward = cross(front, b - a); // AOV eq. 7
-		float squared = dot(inward, inward);
-		if (squared > 0.0f)
-		{
-			float side = clamp(1.0f - dot(a, inward) / (sqrt(squared) * reach), 0.0f, 1.0f);
-			g = side < least ? 0.0f : g * side;
-		}
+		float side = clamp(1.0f - dot(a, inward) * (scale * nookUnit(inward)), 0.0f, 1.0f); // 1 where both ends coincide
+		g = side < least ? 0.0f : g * side;
 		a = b;
 	}
 	return g;

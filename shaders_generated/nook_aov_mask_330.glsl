@@ -130,7 +130,8 @@ float nookProducts(vec2 a, vec2 b, vec2 c, vec2 d)
 	return (a.x * b.x - c.x * d.x) + low;
 }
 
-// Cross product whose direction is accurate even where it nearly cancels.
+// Cross product whose direction is accurate even where it nearly cancels. Where the language has fma(), which rounds once, products
+// and their rounding are subtracted (W. Kahan's difference of products); otherwise factors are split.
 vec3 nookCross(vec3 a, vec3 b)
 {
 	vec3 ha = nookHead(a);
@@ -669,23 +670,26 @@ bool nookReaches(float height, float two_sided, float reach, float bias)
 	return up > bias && up < reach;
 }
 
+// A vector times this has unit length, if it is longer than 1e-15.
+float nookUnit(vec3 a)
+{
+	return 1.0f / sqrt(max(dot(a, a), 1e-30f));
+}
+
 // The falloff without alpha (AOV eqs. 5 and 8), in [0, 1]; 0 outside the volume. height: distance from the plane. share: the
 // volume ends where the factor of a side falls below 1 - share; the height is checked by nookReaches.
 float nookFalloff(int count, vec3 front, float height, float reach, float share)
 {
 	float least = 1.0f - share;
-	float g = clamp(1.0f - height / reach, 0.0f, 1.0f);
+	float scale = 1.0f / reach;
+	float g = clamp(1.0f - height * scale, 0.0f, 1.0f);
 	vec3 a = nookCorner(count - 1);
 	for (int i = 0; i < count; ++i)
 	{
 		vec3 b = nookCorner(i);
 		vec3 inward = cross(front, b - a); // AOV eq. 7
-		float squared = dot(inward, inward);
-		if (squared > 0.0f)
-		{
-			float side = clamp(1.0f - dot(a, inward) / (sqrt(squared) * reach), 0.0f, 1.0f);
-			g = side < least ? 0.0f : g * side;
-		}
+		float side = clamp(1.0f - dot(a, inward) * (scale * nookUnit(inward)), 0.0f, 1.0f); // 1 where both ends coincide
+		g = side < least ? 0.0f : g * side;
 		a = b;
 	}
 	return g;
@@ -713,7 +717,8 @@ float nookProducts(vec2 a, vec2 b, vec2 c, vec2 d)
 	return (a.x * b.x - c.x * d.x) + low;
 }
 
-// Cross product whose direction is accurate even where it nearly cancels.
+// Cross product whose direction is accurate even where it nearly cancels. Where the language has fma(), which rounds once, products
+// and their rounding are subtracted (W. Kahan's difference of products); otherwise factors are split.
 vec3 nookCross(vec3 a, vec3 b)
 {
 	vec3 ha = nookHead(a);

@@ -138,35 +138,13 @@ vec2 nookShare()
 	return vec2(height, height * float(nook_polygon.w >> 8) / 8.0);
 }
 
-// The upper 12 bits of each component: the product of two of them is exact.
-vec3 nookHead(vec3 a)
-{
-	return vec3(uintBitsToFloat(floatBitsToUint(a.x) & 0xfffff000u), uintBitsToFloat(floatBitsToUint(a.y) & 0xfffff000u),
-		uintBitsToFloat(floatBitsToUint(a.z) & 0xfffff000u));
-}
-
-// a * b - c * d for numbers in two parts (the upper bits and the rest), accurate to 2^-36 of the larger product. Swapping a
-// with c and b with d gives exactly the negative.
-float nookProducts(vec2 a, vec2 b, vec2 c, vec2 d)
-{
-	float low = (a.x * b.y + a.y * b.x + a.y * b.y) - (c.x * d.y + c.y * d.x + c.y * d.y);
-	return (a.x * b.x - c.x * d.x) + low;
-}
-
-// Cross product whose direction is accurate even where it nearly cancels.
+// Cross product whose direction is accurate even where it nearly cancels. Where the language has fma(), which rounds once, products
+// and their rounding are subtracted (W. Kahan's difference of products); otherwise factors are split.
 vec3 nookCross(vec3 a, vec3 b)
 {
-	vec3 ha = nookHead(a);
-	vec3 hb = nookHead(b);
-	vec3 la = a - ha;
-	vec3 lb = b - hb;
-	vec2 ax = vec2(ha.x, la.x);
-	vec2 ay = vec2(ha.y, la.y);
-	vec2 az = vec2(ha.z, la.z);
-	vec2 bx = vec2(hb.x, lb.x);
-	vec2 by = vec2(hb.y, lb.y);
-	vec2 bz = vec2(hb.z, lb.z);
-	return vec3(nookProducts(ay, bz, az, by), nookProducts(az, bx, ax, bz), nookProducts(ax, by, ay, bx));
+	vec3 right = vec3(a.z * b.y, a.x * b.z, a.y * b.x);
+	vec3 lost = vec3(fma(a.z, b.y, -right.x), fma(a.x, b.z, -right.y), fma(a.y, b.x, -right.z));
+	return vec3(fma(a.y, b.z, -right.x), fma(a.z, b.x, -right.y), fma(a.x, b.y, -right.z)) - lost;
 }
 
 #ifdef NOOK_CHOOSE_FACES
@@ -727,23 +705,26 @@ bool nookReaches(float height, float two_sided, float reach, float bias)
 	return up > bias && up < reach;
 }
 
+// A vector times this has unit length, if it is longer than 1e-15.
+float nookUnit(vec3 a)
+{
+	return 1.0f / sqrt(max(dot(a, a), 1e-30f));
+}
+
 // The falloff without alpha (AOV eqs. 5 and 8), in [0, 1]; 0 outside the volume. height: distance from the plane. share: the
 // volume ends where the factor of a side falls below 1 - share; the height is checked by nookReaches.
 float nookFalloff(int count, vec3 front, float height, float reach, float share)
 {
 	float least = 1.0f - share;
-	float g = clamp(1.0f - height / reach, 0.0f, 1.0f);
+	float scale = 1.0f / reach;
+	float g = clamp(1.0f - height * scale, 0.0f, 1.0f);
 	vec3 a = nookCorner(count - 1);
 	for (int i = 0; i < count; ++i)
 	{
 		vec3 b = nookCorner(i);
 		vec3 inward = cross(front, b - a); // AOV eq. 7
-		float squared = dot(inward, inward);
-		if (squared > 0.0f)
-		{
-			float side = clamp(1.0f - dot(a, inward) / (sqrt(squared) * reach), 0.0f, 1.0f);
-			g = side < least ? 0.0f : g * side;
-		}
+		float side = clamp(1.0f - dot(a, inward) * (scale * nookUnit(inward)), 0.0f, 1.0f); // 1 where both ends coincide
+		g = side < least ? 0.0f : g * side;
 		a = b;
 	}
 	return g;
@@ -759,35 +740,13 @@ uvec4 nookHalfSpace(ivec2 texel, int four)
 	return texelFetch(nook_half_spaces, ivec2(texel.x, texel.y + four * nookHalfSpaces()), 0);
 }
 
-// The upper 12 bits of each component: the product of two of them is exact.
-vec3 nookHead(vec3 a)
-{
-	return vec3(uintBitsToFloat(floatBitsToUint(a.x) & 0xfffff000u), uintBitsToFloat(floatBitsToUint(a.y) & 0xfffff000u),
-		uintBitsToFloat(floatBitsToUint(a.z) & 0xfffff000u));
-}
-
-// a * b - c * d for numbers in two parts (the upper bits and the rest), accurate to 2^-36 of the larger product. Swapping a
-// with c and b with d gives exactly the negative.
-float nookProducts(vec2 a, vec2 b, vec2 c, vec2 d)
-{
-	float low = (a.x * b.y + a.y * b.x + a.y * b.y) - (c.x * d.y + c.y * d.x + c.y * d.y);
-	return (a.x * b.x - c.x * d.x) + low;
-}
-
-// Cross product whose direction is accurate even where it nearly cancels.
+// Cross product whose direction is accurate even where it nearly cancels. Where the language has fma(), which rounds once, products
+// and their rounding are subtracted (W. Kahan's difference of products); otherwise factors are split.
 vec3 nookCross(vec3 a, vec3 b)
 {
-	vec3 ha = nookHead(a);
-	vec3 hb = nookHead(b);
-	vec3 la = a - ha;
-	vec3 lb = b - hb;
-	vec2 ax = vec2(ha.x, la.x);
-	vec2 ay = vec2(ha.y, la.y);
-	vec2 az = vec2(ha.z, la.z);
-	vec2 bx = vec2(hb.x, lb.x);
-	vec2 by = vec2(hb.y, lb.y);
-	vec2 bz = vec2(hb.z, lb.z);
-	return vec3(nookProducts(ay, bz, az, by), nookProducts(az, bx, ax, bz), nookProducts(ax, by, ay, bx));
+	vec3 right = vec3(a.z * b.y, a.x * b.z, a.y * b.x);
+	vec3 lost = vec3(fma(a.z, b.y, -right.x), fma(a.x, b.z, -right.y), fma(a.y, b.x, -right.z));
+	return vec3(fma(a.y, b.z, -right.x), fma(a.z, b.x, -right.y), fma(a.x, b.y, -right.z)) - lost;
 }
 
 // A number in [0, 1) for each polygon, evenly distributed over any run of consecutive polygons.

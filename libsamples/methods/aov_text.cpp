@@ -260,15 +260,17 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
 class Functions
 {
 public:
-	explicit Functions(const KernelText& kernels) : m_writer(kernels) {}
+	// has_fma: is fma() part of the language?
+	explicit Functions(const KernelText& kernels, bool has_fma = false) : m_writer(kernels), m_has_fma(has_fma) {}
 
 	std::string of(const char* entry)
 	{
-		return m_writer.add(entry, {{"NOOK_CELL", "nook.cell"}});
+		return m_writer.add(entry, {{"NOOK_CELL", "nook.cell"}, {"NOOK_NATIVE_FMA", m_has_fma ? "1" : "0"}});
 	}
 
 private:
 	FunctionWriter m_writer;
+	bool m_has_fma;
 };
 
 std::string inputs(const AovTextSettings& settings)
@@ -353,7 +355,7 @@ std::string maskResolveMain(int directions)
 
 std::string fragmentStage(const AovTextSettings& settings, const std::string& buffers)
 {
-	Functions functions(volumeKernels());
+	Functions functions(volumeKernels(), settings.storage_buffers);
 	std::string text = buffers + replaced(kBetween, "NOOK_WAY", "in") + inputs(settings) + kReceiver;
 	text += functions.of("nookPosition") + functions.of("nookDepthError") + functions.of("nookHeight") + functions.of("nookLift");
 	if (settings.directions == 0)
@@ -425,7 +427,7 @@ std::string aovText(const AovTextSettings& settings)
 	const std::string buffers = settings.storage_buffers ? kBuffers430 : kBuffers330;
 	std::string text = settings.storage_buffers ? "#ifndef NOOK_BLOCK_BINDING\n#define NOOK_BLOCK_BINDING 0\n#endif\n" : "";
 	text += replaced(kBlock, "NOOK_AT_BLOCK", settings.storage_buffers ? ", binding = NOOK_BLOCK_BINDING" : "");
-	Functions of_vertex(volumeKernels());
+	Functions of_vertex(volumeKernels(), settings.storage_buffers);
 	text +=
 		stage("NOOK_VERTEX", buffers + replaced(kBetween, "NOOK_WAY", "out") + of_vertex.of("nookCross") +
 								 "\n#ifdef NOOK_CHOOSE_FACES\n" + kFaces + inputs(settings) + stageText(assets::aov_faces_glsl) +

@@ -39,18 +39,15 @@ bool nookReaches(float height, float two_sided, float reach, float bias)
 float nookFalloff(int count, vec3 front, float height, float reach, float share)
 {
 	float least = 1.0f - share;
-	float g = clamp(1.0f - height / reach, 0.0f, 1.0f);
+	float scale = 1.0f / reach;
+	float g = clamp(1.0f - height * scale, 0.0f, 1.0f);
 	vec3 a = nookCorner(count - 1);
 	for (int i = 0; i < count; ++i)
 	{
 		vec3 b = nookCorner(i);
 		vec3 inward = cross(front, b - a); // AOV eq. 7
-		float squared = dot(inward, inward);
-		if (squared > 0.0f)
-		{
-			float side = clamp(1.0f - dot(a, inward) / (sqrt(squared) * reach), 0.0f, 1.0f);
-			g = side < least ? 0.0f : g * side;
-		}
+		float side = clamp(1.0f - dot(a, inward) * (scale * nookUnit(inward)), 0.0f, 1.0f); // 1 where both ends coincide
+		g = side < least ? 0.0f : g * side;
 		a = b;
 	}
 	return g;

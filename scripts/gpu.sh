@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Measures the cost of the methods on a GPU, on a machine that has nothing but its driver (EGL), a shell and glibc 2.36 or newer. The bundle
-# holds the program, its libraries, levels and their volumes. Libraries of the machine count first, so that its driver finds its own.
+# Measures the cost of the methods on a GPU, on a machine that has nothing but its driver (EGL, Vulkan or both), a shell and glibc 2.36 or
+# newer. The bundle holds the program, its libraries, levels and their volumes, and for Vulkan nook_tests of the same build folder with
+# glslangValidator, where both exist. Libraries of the machine count first, so that its driver finds its own.
 # usage: gpu.sh bundle NOOK FILE.tar.gz [LEVEL...]   makes the bundle; levels default to the courtyard, the suburb and Sponza
 #        gpu.sh run [--quick] FOLDER                 in the unpacked bundle: writes FOLDER/gpu.json, prints a table; --quick: tiny
 set -eu
@@ -11,6 +12,8 @@ refuse()
 	echo "gpu.sh: $2" >&2
 	exit "$1"
 }
+
+loaders="libEGL.so.1 libOpenGL.so.0 libGLdispatch.so.0"
 
 # libraries FILE...: paths of the libraries that they load, but for glibc's.
 libraries()
@@ -38,8 +41,14 @@ bundle()
 	for worker in level exr picture; do
 		cp "$(ls "$(dirname "$nook")"/../lib/nook/nook_${worker}_worker "$(dirname "$nook")"/../libsamples/core/nook_${worker}_worker 2>/dev/null)" "$out/lib/nook/"
 	done
-	libraries "$out"/bin/nook "$out"/lib/nook/* | while read -r library; do cp -L "$library" "$out/libraries/"; done
-	for library in libEGL.so.1 libOpenGL.so.0 libGLdispatch.so.0; do # the loaders, for machines that have a driver alone
+	tests=$(dirname "$nook")/../tests/nook_tests
+	glslang=$(command -v glslangValidator || true)
+	if [ -e "$tests" ] && [ -n "$glslang" ]; then
+		strip -o "$out/bin/nook_tests" "$tests"
+		cp -L "$glslang" "$out/bin/"
+	fi
+	libraries "$out"/bin/* "$out"/lib/nook/* | while read -r library; do cp -L "$library" "$out/libraries/"; done
+	for library in $loaders; do # for machines that have a driver alone
 		cp -L "$(/sbin/ldconfig -p | sed -n "s|^\t$library (libc6,.*) => ||p" | head -n 1)" "$out/libraries/"
 	done
 	for level in "$@"; do
@@ -63,7 +72,7 @@ bundle()
 # Copies what the machine lacks, or has too old, to $use.
 completeLibraries()
 {
-	while missing=$(for program in bin/nook lib/nook/*; do LD_TRACE_LOADED_OBJECTS=1 "./$program" 2>&1 || true; done |
+	while missing=$(for program in bin/* lib/nook/*; do LD_TRACE_LOADED_OBJECTS=1 "./$program" 2>&1 || true; done |
 		sed -n 's/^\t\([^ ]*\) => not found$/\1/p; s/^.*\/\([^/:]*\): version .* not found.*$/\1/p' | sort -u) && [ -n "$missing" ]; do
 		for library in $missing; do
 			[ -e "libraries/$library" ] && [ ! -e "$use/$library" ] || refuse 5 "$library: found none that fits, expected glibc 2.36 or newer"
@@ -72,14 +81,34 @@ completeLibraries()
 	done
 }
 
-# Draws a first picture, with the bundle's loaders where the machine has none.
+# Draws a first picture, with the bundle's loaders where the machine has none. False without OpenGL, where Vulkan is all that there is.
 findRenderer()
 {
 	until bin/nook report times builtin:cornell --only "statvo 2" --size 16x9 --repetitions 1 --json "$use/first.json" >/dev/null 2>"$use/why"; do
 		status=$?
-		grep -q 'found no library' "$use/why" && [ ! -e "$use/libEGL.so.1" ] || { cat "$use/why" >&2; exit "$status"; }
-		cp libraries/libEGL.so.1 libraries/libOpenGL.so.0 libraries/libGLdispatch.so.0 "$use/"
+		if ! grep -q 'found no library' "$use/why" || [ -e "$use/libEGL.so.1" ]; then
+			cat "$use/why" >&2
+			[ -e bin/nook_tests ] || exit "$status"
+			return 1
+		fi
+		for library in $loaders; do cp "libraries/$library" "$use/"; done
 	done
+}
+
+# Modules for Vulkan and HLSL against the CPU, and times of compute shaders. False without a device.
+vulkan()
+{
+	[ -e bin/nook_tests ] || return 1
+	PATH="$PWD/bin:$PATH"
+	if [ -z "$only" ]; then
+		try "Vulkan against the CPU" timeout 60 bin/nook_tests "module: HLSL and Vulkan*" >"$use/vulkan.txt" || cat "$use/vulkan.txt" >&2
+	fi
+	timeout $((start + 500 - $(date +%s))) bin/nook_tests "[.times${only:+_quick}]" >"$use/vulkan.txt" 2>&1 || true
+	sed -n '/| method/,/^[^|]/{ /^|/p; }' "$use/vulkan.txt" >"$use/vulkan.md"
+	[ -s "$use/vulkan.md" ] || return 1
+	sed -i "1i $(sed -n '/| method/{ x; p; }; h' "$use/vulkan.txt"), Vulkan\n" "$use/vulkan.md"
+	sed -n 's/^| \(.*\) | \([0-9]*\) | \([0-9.e-]*\) | \([0-9.e-]*\) |.*/{"method": "\1", "radius_px": \2, "ms_per_megapixel": \3, "method_alone": \4}/p' "$use/vulkan.md" |
+		sed '1s/^/[/; $!s/$/,/; $s/$/]/' >"$use/vulkan"
 }
 
 # left: seconds of the eight minutes, from which the last picture takes some more.
@@ -248,13 +277,35 @@ run()
 	: "${__EGL_VENDOR_LIBRARY_FILENAMES:=$(ls "$use/nvidia.json" /usr/local/nvidia/share/glvnd/egl_vendor.d/*.json /etc/glvnd/egl_vendor.d/*.json /usr/share/glvnd/egl_vendor.d/*.json 2>/dev/null | tr '\n' ':')}"
 	export __EGL_VENDOR_LIBRARY_FILENAMES
 	completeLibraries
-	findRenderer
+	opengl=no
+	if findRenderer; then opengl=yes; opengl; fi
+	vulkan || [ $opengl = yes ] || failed=5
+	{
+		printf '{\n"schema": "nook.gpu/1",\n"seconds": %d' $(($(date +%s) - start))
+		part times times.json
+		part radii radii.json
+		part volumes volumes
+		part tables tables
+		part error error.json
+		part vulkan vulkan
+		echo '}'
+	} >"$out/gpu.json"
+	{
+		[ ! -s "$use/rows" ] || { sed -n 's/.*"renderer": "\([^"]*\)".*/\1\n/p' "$use/first.json"; table; }
+		[ ! -s "$use/vulkan.md" ] || { echo; cat "$use/vulkan.md"; }
+	} | tee "$out/gpu.md"
+	exit $failed
+}
+
+# Everything that OpenGL draws.
+opengl()
+{
 	levels=$(cut -d ' ' -f 1 levels/list)
 	first=$(echo "$levels" | head -n 1)
 	options="--size $small"
 	for size in $sizes; do options="$options --size $size"; done
 	# shellcheck disable=SC2086 # one word each
-	screen times $levels $options --check ${only:+--only "$only"} --seconds 220
+	screen times $levels $options --check ${only:+--only "$only"} --seconds 190
 	# shellcheck disable=SC2086,SC2046
 	screen radii "$first" --size "$middle" --only "$swept" $(printf -- '--radius-px %s ' $radii) --seconds 60
 	for list in "$use/volumes" "$use/tables"; do
@@ -264,17 +315,6 @@ run()
 	done
 	# shellcheck disable=SC2086
 	[ "$(left)" -le 0 ] || try "report error" timeout "$(left)" bin/nook report error "$first" $report --pictures 0 --json "$use/error.json" || true
-	{
-		printf '{\n"schema": "nook.gpu/1",\n"seconds": %d' $(($(date +%s) - start))
-		part times times.json
-		part radii radii.json
-		part volumes volumes
-		part tables tables
-		part error error.json
-		echo '}'
-	} >"$out/gpu.json"
-	{ sed -n 's/.*"renderer": "\([^"]*\)".*/\1\n/p' "$use/first.json"; table; } | tee "$out/gpu.md"
-	exit $failed
 }
 
 case "${1:-} $#" in

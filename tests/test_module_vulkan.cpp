@@ -18,6 +18,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 
 using namespace nook;
 using namespace nook::test;
@@ -325,8 +326,8 @@ public:
 		requireVulkan(vkAllocateDescriptorSets(vulkan.device(), &set, &m_set));
 	}
 
-	// Returns the time in milliseconds.
-	double dispatch(const VulkanPass& pass, const VulkanBuffer& block) const
+	// Dispatches it `times` times, one after the other, which keeps the GPU's clock up. Returns the time of one in milliseconds.
+	double dispatch(const VulkanPass& pass, const VulkanBuffer& block, int times) const
 	{
 		writeBuffer(0, block.buffer);
 		for (const auto& [binding, view] : pass.textures)
@@ -343,14 +344,23 @@ public:
 		{
 			write(kLastBinding, m_last, {});
 		}
-		return m_vulkan.run(
+		const double milliseconds = m_vulkan.run(
 			[&](VkCommandBuffer commands)
 			{
 				vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, m_pipeline);
 				vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, m_layout, 0, 1, &m_set, 0, nullptr);
 				vkCmdPushConstants(commands, m_layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, 16, &pass.numbers);
-				vkCmdDispatch(commands, (pass.width + 7) / 8, (pass.height + 7) / 8, 1);
+				for (int i = 0; i < times; ++i)
+				{
+					vkCmdDispatch(commands, (pass.width + 7) / 8, (pass.height + 7) / 8, 1);
+					auto barrier = vulkanInfo<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
+					barrier.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT;
+					barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
+					vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1,
+										 &barrier, 0, nullptr, 0, nullptr);
+				}
 			});
+		return milliseconds / times;
 	}
 
 private:
@@ -408,9 +418,10 @@ struct ComputedPicture
 	std::vector<float> visibility;
 	std::vector<double> all_ms;  // per repetition
 	std::vector<double> main_ms; // without filters and preparation
+	std::map<std::string, std::vector<double>> calls_ms;
 };
 
-// The picture of a module, computed as its head says.
+// The picture of a module, computed as its head says. For times: with repetitions.
 ComputedPicture computed(const GBuffer& gbuffer, const ModuleSettings& settings, int repetitions = 1)
 {
 	static std::map<std::string, VulkanShader> shaders; // by the module and the number of the pass
@@ -437,7 +448,7 @@ ComputedPicture computed(const GBuffer& gbuffer, const ModuleSettings& settings,
 		pictures.push_back(std::make_unique<VulkanPicture>(vulkan, shape));
 	}
 	std::vector<std::string> calls;
-	ComputedPicture result{{}, std::vector<double>(static_cast<std::size_t>(repetitions)), {}};
+	ComputedPicture result{{}, std::vector<double>(static_cast<std::size_t>(repetitions)), {}, {}};
 	result.main_ms = result.all_ms;
 	for (std::size_t repetition = 0; repetition < result.all_ms.size(); ++repetition)
 	{
@@ -486,8 +497,10 @@ ComputedPicture computed(const GBuffer& gbuffer, const ModuleSettings& settings,
 				const glm::vec4 floats(one.numbers);
 				std::memcpy(&one.numbers, &floats, sizeof floats);
 			}
-			const double milliseconds = shaders.at(key).dispatch(one, block);
+			const double milliseconds = shaders.at(key).dispatch(one, block, repetitions == 1 ? 1 : 64);
 			result.all_ms[repetition] += milliseconds;
+			result.calls_ms[call].resize(result.all_ms.size());
+			result.calls_ms[call][repetition] += milliseconds;
 			result.main_ms[repetition] += pass.of_pixel ? milliseconds : 0.0;
 		}
 	}
@@ -553,43 +566,47 @@ TEST_CASE("module: HLSL and Vulkan's GLSL compute one picture, that of nook shad
 	}
 }
 
-// Hidden: a table for docs/measurements/gpu.md, where the Vulkan device is a GPU.
-TEST_CASE("module times: milliseconds per megapixel of compute shaders, radii in pixels", "[.times]")
+namespace
+{
+
+struct TimedMethod
+{
+	const char* name;
+	ShadeMethod method;
+	int count; // of samples, or slices
+	int steps;
+	bool paper;
+	bool half;
+};
+constexpr std::array kTimed{TimedMethod{"lines 3 x 3", ShadeMethod::vo_line, 3, 0, false, false},
+							TimedMethod{"slices 1 x 2", ShadeMethod::slices, 1, 2, false, false},
+							TimedMethod{"lines 3 x 3, half", ShadeMethod::vo_line, 3, 0, false, true},
+							TimedMethod{"lines 9, one radius", ShadeMethod::vo_line, 9, 0, true, false},
+							TimedMethod{"points 12", ShadeMethod::vo_point, 12, 0, false, false},
+							TimedMethod{"areas 3 x 3", ShadeMethod::vo_area, 3, 0, false, false},
+							TimedMethod{"areas 9, one radius", ShadeMethod::vo_area, 9, 0, true, false},
+							TimedMethod{"Alchemy 9", ShadeMethod::alchemy, 9, 0, false, false},
+							TimedMethod{"slices 1 x 3", ShadeMethod::slices, 1, 3, false, false},
+							TimedMethod{"slices 1 x 4", ShadeMethod::slices, 1, 4, false, false},
+							TimedMethod{"slices 1 x 4, half", ShadeMethod::slices, 1, 4, false, true},
+							TimedMethod{"slices 3 x 6", ShadeMethod::slices, 3, 6, false, false},
+							TimedMethod{"slices 3 x 6, half", ShadeMethod::slices, 3, 6, false, true},
+							TimedMethod{"StatVO, 4 layers, half tables", ShadeMethod::statvo, 0, 0, false, false}};
+
+// Prints the lower quartile of the times of compute shaders.
+void printTimes(std::span<const TimedMethod> methods, std::span<const double> radii_px, int width, int height, int repetitions)
 {
 	const VulkanDevice& vulkan = anyDevice();
 	REQUIRE(vulkan.device() != nullptr);
-	struct Timed
-	{
-		const char* name;
-		ShadeMethod method;
-		int count; // of samples, or slices
-		int steps;
-		bool paper;
-		bool half;
-	};
-	constexpr std::array kTimed{Timed{"lines 3 x 3", ShadeMethod::vo_line, 3, 0, false, false},
-								Timed{"lines 3 x 3, half", ShadeMethod::vo_line, 3, 0, false, true},
-								Timed{"lines 9, one radius", ShadeMethod::vo_line, 9, 0, true, false},
-								Timed{"points 12", ShadeMethod::vo_point, 12, 0, false, false},
-								Timed{"areas 3 x 3", ShadeMethod::vo_area, 3, 0, false, false},
-								Timed{"areas 9, one radius", ShadeMethod::vo_area, 9, 0, true, false},
-								Timed{"Alchemy 9", ShadeMethod::alchemy, 9, 0, false, false},
-								Timed{"slices 1 x 2", ShadeMethod::slices, 1, 2, false, false},
-								Timed{"slices 1 x 3", ShadeMethod::slices, 1, 3, false, false},
-								Timed{"slices 1 x 4", ShadeMethod::slices, 1, 4, false, false},
-								Timed{"slices 1 x 4, half", ShadeMethod::slices, 1, 4, false, true},
-								Timed{"slices 3 x 6", ShadeMethod::slices, 3, 6, false, false},
-								Timed{"slices 3 x 6, half", ShadeMethod::slices, 3, 6, false, true},
-								Timed{"StatVO, 4 layers, half tables", ShadeMethod::statvo, 0, 0, false, false}};
-	std::cout << vulkan.name()
-			  << "\n| method | radius, px | all passes, ms per megapixel | method alone |\n| --- | --- | --- | --- |\n";
-	const GBuffer gbuffer = builtinView("courtyard", 2560, 1440);
-	const auto perMegapixel = [&gbuffer](std::vector<double> times) // the lower quartile
+	std::cout << vulkan.name() << "\n| method | radius, px | all passes, ms per megapixel | method alone | passes |\n"
+			  << "| --- | --- | --- | --- | --- |\n";
+	const GBuffer gbuffer = builtinView("courtyard", width, height);
+	const auto perMegapixel = [&gbuffer](std::vector<double> times)
 	{
 		std::sort(times.begin(), times.end());
 		return 1e6 * times[times.size() / 4] / (gbuffer.width_px * gbuffer.height_px);
 	};
-	for (const Timed& one : kTimed)
+	for (const TimedMethod& one : methods)
 	{
 		ShadeSettings shade;
 		shade.method = one.method;
@@ -607,13 +624,32 @@ TEST_CASE("module times: milliseconds per megapixel of compute shaders, radii in
 		{
 			settings.methods.front().variants = scatteredTile(domainOf(one.method), 4, one.count, false).variants;
 		}
-		for (const double radius_px : {12.0, 48.0, 120.0, 240.0})
+		for (const double radius_px : radii_px)
 		{
 			settings.shade.min_radius_px = radius_px;
 			settings.shade.max_radius_px = radius_px;
-			const ComputedPicture picture = computed(gbuffer, settings, 31);
+			const ComputedPicture picture = computed(gbuffer, settings, repetitions);
 			std::cout << "| " << one.name << " | " << radius_px << " | " << perMegapixel(picture.all_ms) << " | "
-					  << perMegapixel(picture.main_ms) << " |" << std::endl;
+					  << perMegapixel(picture.main_ms) << " |";
+			for (const auto& [call, times] : picture.calls_ms)
+			{
+				std::cout << ' ' << call << ' ' << perMegapixel(times);
+			}
+			std::cout << " |" << std::endl;
 		}
 	}
+}
+
+} // namespace
+
+// Hidden: a table for docs/measurements/gpu.md, where the Vulkan device is a GPU.
+TEST_CASE("module times: milliseconds per megapixel of compute shaders, radii in pixels", "[.times]")
+{
+	printTimes(kTimed, std::array{12.0, 48.0, 120.0, 240.0}, 2560, 1440, 7);
+}
+
+// Hidden: for scripts/gpu.sh run --quick.
+TEST_CASE("module times: two methods on a small picture", "[.times_quick]")
+{
+	printTimes(std::span(kTimed).first(2), std::array{48.0}, 64, 36, 1);
 }

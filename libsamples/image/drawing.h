@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A list of flat shapes, painted in order, that can be written as SVG or rasterised.
+// A list of flat shapes, painted in order, that can be written as SVG.
 #pragma once
 
 #include "core/text.h"
@@ -61,7 +61,7 @@ struct Shape
 	double radius = 0.0;       // circle: pixels
 	double size = 0.0;         // text: font size in pixels
 	Anchor anchor = Anchor::start;
-	std::string text{}; // pixel output supports lower-case letters, digits and ". , : - + % ( ) / = _"
+	std::string text{};
 };
 
 struct Drawing
@@ -75,10 +75,6 @@ struct Drawing
 
 // A stand-alone file: title, notes as its description, shapes. Coordinates are rounded to a hundredth of a pixel.
 std::string svgText(const Drawing& drawing, const Notes& notes);
-
-// Polygons, lines and text as 8-bit RGB rows from the top, one pixel per unit, each the mean of 4 × 4 samples. Circles are not
-// drawn.
-std::vector<uint8_t> rasterised(const Drawing& drawing);
 
 // Picture of test − reference: blue where the test is darker, red where it is lighter, with a legend.
 

@@ -373,9 +373,9 @@ Drawing pairPicture(const Pattern& pattern, const std::string& title, const std:
 	return drawing;
 }
 
-constexpr int kLeastWidth = 360; // pixels: minimum for the legend's text
+constexpr int kLeastWidth = 360; // pixels: minimum for the legend's values
 constexpr int kGreatestFactor = 32;
-constexpr int kLegendHeight = 64;
+constexpr int kLegendHeight = 48;
 constexpr Colour kNotCounted = colourOf(0x9a9a9a);
 
 // `share` is −1 to 1. The blue and red are distinguishable for the colour-blind, and both darken evenly from white, so that size
@@ -395,30 +395,56 @@ uint8_t byteOf(double channel)
 	return static_cast<uint8_t>(std::floor(255.0 * channel + 0.5));
 }
 
-Drawing legend(int width_px, double range, bool all_count)
+void append(std::vector<uint8_t>& rgb, const Colour& colour)
 {
-	Drawing drawing;
-	drawing.width_px = width_px;
-	drawing.height_px = kLegendHeight;
-	drawing.background = kBackground;
-	const double half = std::min(0.5 * width_px - 30.0, 300.0);
-	const double centre = 0.5 * width_px;
-	constexpr int kSlices = 121;
-	for (int i = 0; i < kSlices; ++i)
+	for (const double channel : {colour.red, colour.green, colour.blue})
 	{
-		const double left = centre + half * (2.0 * i / kSlices - 1.0);
-		addBar(drawing, left, left + 2.0 * half / kSlices + 0.5, 10.0, 22.0, differenceColour(2.0 * i / (kSlices - 1) - 1.0));
+		rgb.push_back(byteOf(channel));
+	}
+}
+
+// Characters of three columns and five rows, as bits from the upper left one.
+constexpr std::string_view kCharacters = "0123456789.-+e";
+constexpr std::array<unsigned, 14> kCharacterBits{0x7b6f, 0x2c97, 0x73e7, 0x73cf, 0x5bc9, 0x79cf, 0x79ef,
+												  0x7249, 0x7bef, 0x7bcf, 0x0002, 0x01c0, 0x05d0, 0x7be7};
+
+// The colours from −range to +range, with five values below.
+std::vector<uint8_t> legend(int width_px, double range)
+{
+	std::vector<Colour> pixels(static_cast<std::size_t>(width_px * kLegendHeight), kBackground);
+	const auto paint = [&](int x, int y, int size, const Colour& colour)
+	{
+		for (int i = 0; i < size * size; ++i)
+		{
+			pixels[static_cast<std::size_t>((y + i / size) * width_px + x + i % size)] = colour;
+		}
+	};
+	const int half = std::min(width_px / 2 - 30, 300);
+	for (int i = 0; i <= 2 * half * 12; ++i)
+	{
+		paint(width_px / 2 - half + i / 12, 10 + i % 12, 1, differenceColour(static_cast<double>(i / 12) / half - 1.0));
 	}
 	for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0})
 	{
-		const double x = centre + half * share;
-		addLine(drawing, {{x, 22.0}, {x, 26.0}}, kBorder, 1.0);
-		addText(drawing, {x, 39.0}, 11.0, kInk, (share > 0.0 ? "+" : "") + roundedText(share * range, 3), Anchor::middle);
+		const int x = width_px / 2 + static_cast<int>(half * share);
+		const std::string text = (share > 0.0 ? "+" : "") + roundedText(share * range, 3);
+		paint(x, 23, 2, kBorder);
+		for (std::size_t i = 0; i < 15 * text.size(); ++i)
+		{
+			const int bit = static_cast<int>(i % 15);
+			if ((kCharacterBits[std::min(kCharacters.find(text[i / 15]), kCharacterBits.size() - 1)] >> (14 - bit) & 1U) != 0)
+			{
+				paint(x - 4 * static_cast<int>(text.size()) + 8 * static_cast<int>(i / 15) + 2 * (bit % 3), 30 + 2 * (bit / 3), 2,
+					  kInk);
+			}
+		}
 	}
-	addText(drawing, {centre, 56.0}, 11.0, kSoftInk,
-			std::string("test - reference (blue: test darker, red: lighter)") + (all_count ? "" : ", gray: not counted"),
-			Anchor::middle);
-	return drawing;
+	std::vector<uint8_t> rgb;
+	for (const Colour& colour : pixels)
+	{
+		append(rgb, colour);
+	}
+	return rgb;
 }
 
 std::vector<uint8_t> colours(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,
@@ -429,11 +455,7 @@ std::vector<uint8_t> colours(const VisibilityPlane& test, const VisibilityPlane&
 	for (std::size_t i = 0; i < test.values.size(); ++i)
 	{
 		const double difference = static_cast<double>(test.values[i]) - static_cast<double>(reference.values[i]);
-		const Colour colour = counted.empty() || counted[i] != 0 ? differenceColour(difference / range) : kNotCounted;
-		for (const double channel : {colour.red, colour.green, colour.blue})
-		{
-			rgb.push_back(byteOf(channel));
-		}
+		append(rgb, counted.empty() || counted[i] != 0 ? differenceColour(difference / range) : kNotCounted);
 	}
 	return rgb;
 }
@@ -533,8 +555,7 @@ std::string differencePng(const VisibilityPlane& test, const VisibilityPlane& re
 	const int width = std::max(test.width_px * factor, kLeastWidth);
 	const int height = test.height_px * factor;
 	const std::vector<uint8_t> picture = colours(test, reference, counted, range);
-	const bool all_count = std::find(counted.begin(), counted.end(), uint8_t{0}) == counted.end();
-	const std::vector<uint8_t> strip = rasterised(legend(width, range, all_count));
+	const std::vector<uint8_t> strip = legend(width, range);
 	const std::array<uint8_t, 3> paper{byteOf(kBackground.red), byteOf(kBackground.green), byteOf(kBackground.blue)};
 	std::vector<uint8_t> rgb;
 	rgb.reserve(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height) + strip.size());

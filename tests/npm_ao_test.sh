@@ -35,10 +35,10 @@ node - said <<-'JS' >log 2>&1 || problem "the page: $(head -c 600 log)"
 	const { deepStrictEqual } = require('node:assert');
 	// The largest difference of each comparison, or its value.
 	const bounds = { infinite: 1e-3, logarithmicDepthBuffer: 2e-3, reversedDepthBuffer: 2e-3, reversedHalf: 0.03, orthographic: 4e-3, half: 0.03,
-		normals: 0.01, temporal: [1e-6, 0.2], multisampled: 0.06, intensity: 2e-3, tint: 0, product: 1e-3, view: 0, split: [0, 0], afterRender: 0,
+		normals: 0.01, smooth: 1, castingNormals: 0, card: 0.05, points: 0, temporal: [1e-6, 0.2], multisampled: 0.06, intensity: 2e-3, tint: 0, product: 1e-3, view: 0, split: [0, 0], afterRender: 0,
 		twice: 1e-3, postprocessing: 0, transparent: 0, over: 1e-3, layers: 0, casting: 0, bakedOnly: 1e-3, resized: 0, changed: 0, restoredContext: 0,
 		tinted: 0 };
-	const rest = { sky: 1, restored: [9, true, 0x8080ff], meshes: 1, level: true, nothing: null, memory: 0,
+	const rest = { sky: 1, restored: [9, true, 0x8080ff], meshes: 1, level: true, kept: true, nothing: null, memory: 0,
 		disposed: 'Error: NookPass: found render after dispose, expected a new pass' };
 	const found = { ...differences }, wrong = [];
 	for (const [name, bound] of Object.entries(bounds)) {
@@ -48,7 +48,9 @@ node - said <<-'JS' >log 2>&1 || problem "the page: $(head -c 600 log)"
 	if (!(found.included > 0.05)) wrong.push(`included: found ${found.included}, expected a transparent object to occlude`);
 	if (!(found.covered > 0.1)) wrong.push(`covered: found ${found.covered}, expected the transparent object on a tenth of the picture`);
 	if (!(found.baked < 0.2)) wrong.push(`baked: found ${found.baked}, expected the ball to be dark`);
-	for (const name of ['included', 'covered', 'baked']) delete found[name];
+	if (!(found.facets > 1.5)) wrong.push(`facets: found ${found.facets} degrees, expected normals from depth to be off the ball's by more`);
+	if (!(found.mapped > 0.03)) wrong.push(`mapped: found ${found.mapped}, expected the normal map on the card`);
+	for (const name of ['included', 'covered', 'baked', 'facets', 'mapped']) delete found[name];
 	if (wrong.length > 0) throw new Error(wrong.join('; '));
 	deepStrictEqual(found, rest);
 	deepStrictEqual(refused, [

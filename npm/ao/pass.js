@@ -91,31 +91,75 @@ void main() {
 	}
 }
 
-/** Draws the scene's depth, and its normals with MeshNormalMaterial, where no texture has them. */
+// Properties of a material that change the normals or the outline of its surface. Colours matter only where alpha cuts holes.
+const surfaceKeys = ['side', 'depthTest', 'opacity', 'alphaTest', 'alphaMap', 'bumpMap', 'bumpScale', 'normalMap', 'normalMapType', 'normalScale', 'displacementMap',
+	'displacementScale', 'displacementBias', 'flatShading'];
+
+// MeshNormalMaterial ignores alpha: adds the chunks that cut holes after two that it has.
+function cutHoles(shader) {
+	for (const [after, added] of [['uv_pars', ['map_pars', 'alphamap_pars', 'alphatest_pars']], ['logdepthbuf', ['map', 'alphamap', 'alphatest']]]) {
+		const chunks = [after, ...added].map(name => `#include <${name}_fragment>`);
+		shader.fragmentShader = shader.fragmentShader.replace(chunks[0], chunks.join('\n'));
+	}
+}
+
+/** Draws the scene's depth, where no texture has it, and the normals of its materials: smooth, mapped, of both sides, with holes. */
 export class Prepass {
 	constructor() {
-		this.material = new MeshNormalMaterial();
+		this.materials = new Map(); // a material's normals by the material
 		this.target = targetOf(UnsignedByteType);
 		this.target.depthBuffer = true;
 		this.target.depthTexture = new DepthTexture(1, 1, FloatType);
+		this.drop = ({ target }) => {
+			target.removeEventListener('dispose', this.drop);
+			this.materials.get(target)?.dispose();
+			this.materials.delete(target);
+		};
 	}
 
 	render(renderer, scene, camera, width, height) {
 		const kept = [scene.overrideMaterial, scene.background, renderer.autoClear, renderer.shadowMap.autoUpdate];
+		const changed = [];
+		scene.traverseVisible(object => {
+			if (!object.material || invisible.includes(object.material)) return;
+			changed.push([object, object.layers.mask, object.material]);
+			if (!object.isMesh) object.layers.mask = 0; // lines, points and sprites have no normals
+			else object.material = Array.isArray(object.material) ? object.material.map(one => this._normalsOf(one)) : this._normalsOf(object.material);
+		});
 		this.target.setSize(width, height);
-		scene.overrideMaterial = this.material;
+		const clear = renderer.getClearColor(new Color()), alpha = renderer.getClearAlpha();
+		renderer.setClearColor(new Color(0.5, 0.5, 0.5), 1); // no direction, as normals from depth have for sky
+		scene.overrideMaterial = null;
 		scene.background = null;
 		renderer.autoClear = true;
 		renderer.shadowMap.autoUpdate = false;
 		renderer.setRenderTarget(this.target);
 		renderer.render(scene, camera);
+		renderer.setClearColor(clear, alpha);
+		show(changed);
 		[scene.overrideMaterial, scene.background, renderer.autoClear, renderer.shadowMap.autoUpdate] = kept;
 	}
 
 	dispose() {
+		for (const material of [...this.materials.keys()]) this.drop({ target: material });
 		this.target.depthTexture.dispose();
 		this.target.dispose();
-		this.material.dispose();
+	}
+
+	_normalsOf(material) {
+		let made = this.materials.get(material);
+		if (!made) {
+			made = new MeshNormalMaterial();
+			made.onBeforeCompile = cutHoles;
+			this.materials.set(material, made);
+			material.addEventListener('dispose', this.drop);
+		}
+		for (const key of surfaceKeys) if (material[key] !== undefined) made[key] = material[key];
+		made.visible = material.visible && material.depthWrite;
+		made.map = material.alphaTest > 0 ? material.map ?? null : null;
+		if (made.userData.version !== material.version) made.needsUpdate = true;
+		made.userData.version = material.version;
+		return made;
 	}
 }
 

@@ -131,6 +131,18 @@ differences.orthographic = rmse(ortho.open, drawn({}, { from: deep }).open);
 const half = drawn({ halfResolution: true });
 differences.half = rmse(half.open, base.open);
 differences.normals = rmse(drawn({ normals: 'pass' }).open, base.open);
+// The picture of normals: angles in degrees to those of the ball, where it is seen.
+const normalsOf = options => [0, 1, 2].map(channel => drawn({ view: 'normals', ...options }, { channel }).colours.map(one => 2 * one - 1));
+{
+	const centre = ball.position.clone().applyMatrix4(camera.matrixWorldInverse), inverse = camera.projectionMatrixInverse;
+	const anglesOf = normals => Array.from(base.depths, (depth, i) => {
+		const at = new THREE.Vector3((i % width + 0.5) / width * 2 - 1, 1 - (Math.floor(i / width) + 0.5) / height * 2, 0.5).applyMatrix4(inverse);
+		const seen = at.multiplyScalar(depth / -at.z).sub(centre);
+		if (Math.abs(seen.length() - 0.5) > 0.005) return -1;
+		return seen.angleTo(new THREE.Vector3(...normals.map(axis => axis[i]))) * 180 / Math.PI;
+	}).filter(angle => angle >= 0);
+	[differences.smooth, differences.facets] = ['pass', 'depth'].map(normals => mean(anglesOf(normalsOf({ normals }))));
+}
 // The next frame changes the mean of many by less than the first two frames differ.
 const [once, next, many, more] = [1, 2, 32, 33].map(frames => drawn({ temporal: true }, { frames }).open);
 differences.temporal = [rmse(once, base.open), rmse(many, more) / rmse(once, next)];
@@ -178,8 +190,37 @@ glass.layers.enable(3);
 differences.layers = rmse(drawn({ excludeLayers: [3] }).open, base.open);
 glass.castShadow = true;
 differences.casting = rmse(drawn({ excludeLayers: [3] }).open, base.open);
+const [smooth, clear] = [[], [3]].map(excludeLayers => {
+	scene[excludeLayers.length ? 'add' : 'remove'](glass);
+	return drawn({ normals: 'pass', excludeLayers }).open;
+});
+differences.castingNormals = rmse(smooth, clear);
 differences.restored = [glass.layers.mask, glass.material === grey, scene.background.getHex()];
 scene.remove(glass);
+
+// ---- Normals of a card that is seen from its back, has holes and a normal map: those of a flat one, and of the surface behind it.
+{
+	const texels = (...values) => Object.assign(new THREE.DataTexture(Uint8Array.from(values), 2, 1), { needsUpdate: true });
+	const leaf = new THREE.MeshLambertMaterial({ side: THREE.DoubleSide, alphaTest: 0.5, map: texels(255, 255, 255, 255, 255, 255, 255, 0) });
+	const card = new THREE.Mesh(new THREE.PlaneGeometry(2, 1.2), leaf);
+	card.position.set(0, 1, 0.5);
+	card.rotation.y = Math.PI + 0.3;
+	scene.add(card);
+	const points = new THREE.Points(new THREE.PlaneGeometry(1, 1), new THREE.PointsMaterial({ size: 2, depthWrite: false }));
+	points.position.set(0, 1, 2);
+	scene.add(points);
+	// Away from edges, where depth has normals of neighbours: in most pixels.
+	const apart = normals => [0, 1, 2].map(axis => normals[0][axis].map((one, i) => Math.abs(one - normals[1][axis][i]))).reduce((most, axis) => most.map((one, i) => Math.max(one, axis[i])));
+	const both = normalsOf({ normals: 'pass' });
+	differences.card = mean(apart([both, normalsOf()]).map(one => one > 0.02 ? 1 : 0));
+	differences.points = rmse(both[0], (scene.remove(points), normalsOf({ normals: 'pass' }))[0]);
+	leaf.normalMap = texels(128, 255, 128, 255, 128, 255, 128, 255);
+	leaf.needsUpdate = true;
+	differences.mapped = mean(apart([both, normalsOf({ normals: 'pass' })]).map(one => one > 0.1 ? 1 : 0));
+	differences.kept = card.material === leaf && scene.overrideMaterial === null;
+	scene.remove(card);
+	for (const one of [leaf.map, leaf.normalMap, leaf, card.geometry, points.geometry, points.material]) one.dispose();
+}
 
 // ---- Baked visibility: where it is lower than that of the screen, the screen changes nothing.
 const dark = new Float32Array(ball.geometry.attributes.position.count).fill(0.1);

@@ -67,7 +67,7 @@ node - said <<-'JS' >log 2>&1 || problem "the page: $(head -c 600 log)"
 JS
 
 # nook shade draws these depths.
-node "$here/live_page_files.cjs" read <said || problem "the page: $(head -c 300 said)"
+node "$here/live_site_files.cjs" read <said || problem "the page: $(head -c 300 said)"
 projection=$(node -e 'console.log(JSON.parse(require("fs").readFileSync("said", "utf8")).projection.join(" "))')
 oiiotool read/v0.tif --chnames Z -o depth.exr || problem "depth: not read"
 # pictured PICTURE SLICES STEPS PERCENT: at most PERCENT of the pixels differ by more than 1.5/255, since the page's normals have 8 bits.

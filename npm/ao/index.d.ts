@@ -30,6 +30,8 @@ export interface CompositeOptions extends NookAOOptions {
 	normals?: 'depth' | 'pass';
 	/** The scene's materials come from useBakedVisibility: the lower visibility of bake and screen decides. Default false. */
 	baked?: boolean;
+	/** Static occlusion of the level, drawn with every frame; the lower visibility decides. Default null. */
+	volumes?: NookVolumes | null;
 }
 
 export interface NookPassOptions extends CompositeOptions {
@@ -59,6 +61,7 @@ export class NookPass extends Pass implements Required<Omit<NookPassOptions, 'ti
 	set tint(colour: ColorRepresentation);
 	normals: 'depth' | 'pass';
 	baked: boolean;
+	volumes: NookVolumes | null;
 	renderScene: boolean;
 	samples: number;
 	excludeTransparent: boolean;
@@ -98,3 +101,14 @@ export class NookAO implements Required<NookAOOptions> {
 
 /** Multiplies ambient light by the visibility that `nook bake` stored at vertices. Returns the number of meshes that have it. */
 export function useBakedVisibility(root: Object3D): number;
+
+/** Static occlusion from a file of `nook volumes`, which was not made with --compress. Throws a RangeError for another file. */
+export class NookVolumes {
+	constructor(buffer: ArrayBuffer | Uint8Array);
+	/** Visibility of the last frame, 1 where open, in the first channel; null before the first. */
+	get texture(): Texture | null;
+	/** Draws over depths and normals of a NookAO. Returns false, and draws nothing, where the context is lost. */
+	render(renderer: WebGLRenderer, camera: Camera, depths: Texture, normals: Texture): boolean;
+	/** Frees everything. Further calls do nothing. */
+	dispose(): void;
+}

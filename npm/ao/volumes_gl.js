@@ -5,7 +5,9 @@
 //	const texture = volumes.draw({ cameraFromWorld, projection, width, height, depths, normals }); // R8, 1 where open
 //
 // It changes GL's state: the program, the framebuffer, the viewport, textures, buffers, blending and culling.
-import { VolumesFrame } from './volumes_file.js';
+import { readVolumes, VolumesFrame } from './volumes_file.js';
+
+export { readVolumes };
 
 const kTriangle = '#version 300 es\nvoid main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }\n';
 

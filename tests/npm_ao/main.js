@@ -8,8 +8,9 @@ import { OutputPass } from 'three/addons/postprocessing/OutputPass.js';
 import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
 import { RenderPass } from 'three/addons/postprocessing/RenderPass.js';
 import * as POST from 'postprocessing';
-import { NookAO, NookPass, useBakedVisibility } from 'nook-ao';
+import { NookAO, NookPass, NookVolumes, useBakedVisibility } from 'nook-ao';
 import { nookPassFor } from 'nook-ao/postprocessing';
+import { cameraOf, sceneOf } from './scene.js';
 
 const width = 192, height = 108;
 const rendererOf = options => {
@@ -20,30 +21,7 @@ const rendererOf = options => {
 const renderer = rendererOf();
 document.body.append(renderer.domElement);
 
-// A floor, a wall and things on it, below sky.
-const scene = new THREE.Scene().add(new THREE.HemisphereLight(0xffffff, 0xffffff, Math.PI));
-scene.background = new THREE.Color(0x8080ff);
-const grey = new THREE.MeshLambertMaterial({ color: 0xffffff });
-const box = (x, y, z, dx, dy, dz, material = grey) => {
-	const mesh = new THREE.Mesh(new THREE.BoxGeometry(dx, dy, dz), material);
-	mesh.position.set(x, y, z);
-	scene.add(mesh);
-	return mesh;
-};
-box(0, -0.5, 0, 12, 1, 12);
-box(0, 1, -3, 8, 2, 0.5);
-box(-1.5, 0.4, -1, 0.8, 0.8, 0.8).rotation.y = 0.5;
-box(1.2, 0.25, 0, 1.5, 0.5, 0.5).rotation.y = -0.3;
-box(1.2, 0.9, -1.8, 0.3, 1.8, 0.3);
-const ball = new THREE.Mesh(new THREE.SphereGeometry(0.5, 32, 16), grey);
-ball.position.set(0, 0.5, -0.8);
-scene.add(ball);
-const cameraOf = camera => {
-	camera.position.set(0.6, 2, 4);
-	camera.lookAt(0, 0.5, -1);
-	camera.updateMatrixWorld();
-	return camera;
-};
+const { scene, grey, box, ball } = sceneOf();
 const camera = cameraOf(new THREE.PerspectiveCamera(50, width / height, 0.1, 100));
 
 // The first channel of a texture, rows from the top.
@@ -66,8 +44,8 @@ function read(texture, renderer, channel = 0) {
 }
 
 // Pictures of a three.js composer: the pass's own and, in `colours`, the composer's.
-function drawn(options = {}, { on = renderer, from = camera, frames = 1, before = [], after = [], channel = 0 } = {}) {
-	const pass = new NookPass(scene, from, width, height, options);
+function drawn(options = {}, { on = renderer, from = camera, frames = 1, before = [], after = [], channel = 0, of = scene } = {}) {
+	const pass = new NookPass(of, from, width, height, options);
 	const composer = new EffectComposer(on, new THREE.WebGLRenderTarget(width, height, { type: THREE.HalfFloatType }));
 	composer.renderToScreen = false;
 	for (const one of [...before, pass, ...after]) composer.addPass(one);
@@ -235,6 +213,34 @@ differences.level = useBakedVisibility(level.scene) > 0 && useBakedVisibility(sc
 ball.material = grey;
 ball.geometry.deleteAttribute('_visibility');
 
+// ---- Volumes of the level: with the screen's visibility, the lower of both.
+const room = new THREE.Scene().add(level.scene, new THREE.HemisphereLight(0xffffff, 0xffffff, Math.PI));
+room.updateMatrixWorld(true);
+const inside_room = new THREE.PerspectiveCamera(level.cameras[0].fov, width / height, 0.1, 100);
+level.cameras[0].matrixWorld.decompose(inside_room.position, inside_room.quaternion, inside_room.scale);
+inside_room.updateMatrixWorld();
+const file = await (await fetch('volumes.glb')).arrayBuffer();
+{
+	const volumes = new NookVolumes(file), at = { of: room, from: inside_room };
+	differences.noVolumes = volumes.texture;
+	const pass = new NookPass(room, inside_room, width, height, { volumes, normals: 'depth' });
+	const target = new THREE.WebGLRenderTarget(width, height, { type: THREE.HalfFloatType });
+	pass.render(renderer, target, target);
+	const open = read(volumes.texture, renderer), screen = read(pass.texture, renderer);
+	pictures.push({ words: 'room', values: bytes(read(pass._ao.depths, renderer)) }, { words: 'volumes', values: bytes(open) });
+	differences.lower = rmse(drawn({ volumes, view: 'visibility' }, at).colours, open.map((one, i) => Math.min(one, screen[i])));
+	const dark = drawn({ volumes, halfResolution: true, normals: 'pass', quality: 'low' }, at).colours, light = drawn({ halfResolution: true, normals: 'pass', quality: 'low' }, at).colours;
+	differences.volumesDarken = [dark.filter((one, i) => one > light[i] + 1e-3).length, mean(light) - mean(dark)];
+	const other = rendererOf({ reversedDepthBuffer: true });
+	differences.volumesReversed = rmse(drawn({ volumes, view: 'visibility' }, { ...at, on: other, from: inside_room.clone() }).colours, drawn({ volumes, view: 'visibility' }, at).colours);
+	other.dispose();
+	pass.dispose();
+	target.dispose();
+	volumes.dispose();
+	volumes.dispose();
+	differences.volumesDisposed = refusal(() => volumes.render(renderer, inside_room, null, null));
+}
+
 // ---- Sizes, disposal, lost context.
 {
 	const pass = new NookPass(scene, camera, 0, 0);
@@ -279,6 +285,8 @@ ball.geometry.deleteAttribute('_visibility');
 
 const unlimited = new THREE.PerspectiveCamera(50, 1, 0.1, Infinity);
 const refused = [
+	refusal(() => new NookVolumes(file.slice(0, 4000))),
+	refusal(() => new NookPass(scene, camera, width, height, { volumes: 'volumes.glb' })),
 	refusal(() => new NookPass(scene, camera, width, height, { radius: -1 })),
 	refusal(() => new NookPass(scene, camera, width, height, { quality: 'ultra' })),
 	refusal(() => new NookPass(scene, camera, width, height, { radious: 1 })),
@@ -288,4 +296,5 @@ const refused = [
 	refusal(() => drawn({}, { from: unlimited })),
 	refusal(() => new NookAO(camera, 8, 8).render({ isWebGPURenderer: true, getContext: () => ({ isContextLost: () => false }) }, null)),
 ];
-globalThis.said = { width, height, patterns: [], projection: camera.projectionMatrix.elements, pictures, differences, refused, shadowed: mean(base.open) };
+globalThis.said = { width, height, patterns: [], projection: camera.projectionMatrix.elements,
+	room: [inside_room.projectionMatrix.elements, inside_room.matrixWorldInverse.elements], pictures, differences, refused, shadowed: mean(base.open) };

@@ -52,6 +52,6 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 if [ -s "$root/build/wasm/npm/nook.wasm" ] && [ -e "$root/build/site_modules/installed" ] && command -v "$browser" >"$scratch/out" && command -v node >"$scratch/out"; then
 	node "$root/site/build.mjs" --nook "$nook" -o "$scratch/live.html"
 	echo 'const drawn = document.documentElement.dataset; while (!drawn.settled || !drawn.started) await new Promise(later => setTimeout(later, 100));' |
-		node "$root/tests/page_driver.cjs" "$browser" "$scratch/live.html" --width 1000 --tall 2120 --screenshot "$scratch/live.png" >"$scratch/out"
+		node "$root/tests/page_driver.cjs" "$browser" "$scratch/live.html" --width 1000 --tall 2000 --screenshot "$scratch/live.png" >"$scratch/out"
 	oiiotool "$scratch/live.png" --resize 640x0 -o "$folder/live_page.png"
 fi

@@ -21,6 +21,13 @@ function sharedParts(source) {
 	};
 }
 
+// Licences of what the script contains, which Vite's build drops.
+function noticeOf(modules) {
+	const read = name => readFileSync(join(modules, 'three', name), 'utf8').trim();
+	const meshopt = read('examples/jsm/libs/meshopt_decoder.module.js').split('\n').filter(line => line.startsWith('// ')).slice(0, 2).map(line => line.slice(3)).join('\n');
+	return `/*\nnook: GPL-3.0-or-later. nook-ao: MIT.\n\n${meshopt}\n\nthree.js: ${read('LICENSE')}\n*/\n`;
+}
+
 /** The files of the site: {name: text}; `whole`: all of it in index.html. */
 export async function bundle({ root, source, modules, npm, ao, data, whole }) {
 	const { build } = await import(pathToFileURL(join(modules, 'vite/dist/node/index.js')));
@@ -41,14 +48,15 @@ export async function bundle({ root, source, modules, npm, ao, data, whole }) {
 		if (!found) throw new Error(`vite: found ${output.map(one => one.fileName).join(', ')}, expected ${name}`);
 		return String(found.code ?? found.source);
 	};
+	const notice = noticeOf(modules);
 	const script = `globalThis.nookData = ${JSON.stringify(data).replaceAll('<', '\\u003c')};\n`, page = textOf('index.html').replace(/^.*<script type="module".*\n?/m, '').replace(/^.*<link rel="stylesheet".*\n?/m, '');
 	const into = (end, text) => html => html.replace(end, () => `${text}\n${end}`);
 	if (whole) {
-		const code = textOf('site.js').replaceAll('</script', '<\\/script');
+		const code = `${notice}${textOf('site.js')}`.replaceAll('</script', '<\\/script');
 		return { 'index.html': into('</body>', `<script>\n${script}</script>\n<script>\n${code}</script>`)(into('</head>', `<style>\n${textOf('site.css')}</style>`)(page)) };
 	}
 	return {
 		'index.html': into('</body>', '<script src="./data.js"></script>\n<script src="./site.js"></script>')(into('</head>', '<link rel="stylesheet" href="./site.css">')(page)),
-		'data.js': script, 'site.js': textOf('site.js'), 'site.css': textOf('site.css'),
+		'data.js': script, 'site.js': notice + textOf('site.js'), 'site.css': textOf('site.css'),
 	};
 }

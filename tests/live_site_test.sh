@@ -58,12 +58,12 @@ refuses 1 'docs: found with the page refused.html, expected a folder' $small --n
 checks=$((checks + 1))
 live $small -o other 2>err
 [ $? = 2 ] && grep -q 'other: found other files in it, expected an empty folder' err && [ -e other/package.json ] || problem "another's folder: found '$(cat err)'"
-live $small -o page.html || { problem "the live page: not made"; finish; }
+live $small -o page.html || { problem "the page: not made"; finish; }
 # A disk that is full, as a limit to the size of files: one line, and nothing half written.
 checks=$((checks + 1))
 (trap "" XFSZ; ulimit -f 4; live $small -o limited.html 2>err)
 [ $? = 2 ] && [ "$(wc -l <err)" = 1 ] && [ -z "$(ls | grep limited)" ] || problem "a full disk: found '$(cat err)' and $(ls | grep limited), expected one line"
-live $small -o again.html || problem "the live page: not made again"
+live $small -o again.html || problem "the page: not made again"
 same page.html again.html "the page made again: expected the same bytes"
 # A folder, twice in the same place, with documentation, from a server below an address of its own.
 mkdir -p docs
@@ -72,6 +72,9 @@ for time in first second; do
 	live $small -o below/site --docs docs || problem "the site: not made the $time time"
 done
 [ "$(ls below/site | tr '\n' ' ')" = 'data.js docs index.html site.css site.js ' ] || problem "the site: found $(ls below/site)"
+
+checks=$((checks + 1))
+grep -q 'three.js authors' below/site/site.js && grep -q 'meshoptimizer library' page.html || problem "the site: found no licences of three.js and meshoptimizer"
 
 # driven PAGE OPTIONS… <SCRIPT: writes the script's result to ./said.
 driven()

@@ -96,9 +96,10 @@ void main() {
 
 	/** Values for draw() from the options of a pass. */
 	static valuesOf(pass, ao, colours, normals) {
+		const statics = pass.volumes?.texture ?? null;
 		return {
 			colours, visibilities: ao.texture, depths: ao.depths, normals: normals ?? ao.normals, tint: pass.tint, view: views.indexOf(pass.view), baked: pass.baked,
-			width: ao._size.x, range: 20 * pass.radius, statics: pass.volumes?.texture ?? null, has_statics: pass.volumes !== null,
+			width: ao._size.x, range: 20 * pass.radius, statics, has_statics: statics !== null,
 		};
 	}
 

@@ -87,14 +87,15 @@ node - said <<-'JS' >log 2>&1 || problem "WebGPU: $(head -c 600 log)"
 	const { deepStrictEqual } = require('node:assert');
 	const most = 2 / 255, half = [0.03, 0.002], exact = [1e-3, 0];
 	const bounds = { low: [most, 0], medium: [most, 0], high: [most, 0], lowHalf: half, mediumHalf: half, highHalf: half, colours: [most, 0], tint: [most, 0],
-		radius: [0.02, 0.001], sky: [most, 0], orthographic: [0.05, 0.005], reversed: [0.1, 0.01], changed: exact, resized: exact };
+		radius: [0.02, 0.001], sky: [most, 0], orthographic: [0.05, 0.005], reversed: [0.1, 0.01], changed: exact, resized: exact, transparent: [0.01, 0.001], darkened: [1, 1] };
 	deepStrictEqual(Object.keys(differences).sort(), Object.keys(bounds).sort());
 	const wrong = Object.entries(bounds).filter(([name, bound]) => !differences[name].every((one, i) => one <= bound[i]));
 	if (wrong.length > 0) throw new Error(wrong.map(([name, bound]) => `${name}: found ${differences[name]}, expected at most ${bound}`).join('; '));
+	if (!(differences.darkened[0] > 0.05)) throw new Error(`darkened: found ${differences.darkened}, expected glass that is darkened`);
 	if (!webgpu || !(shadowed < 0.97)) throw new Error(`found WebGPU ${webgpu} and a mean visibility of ${shadowed}, expected a picture with shadows`);
 	deepStrictEqual(refused, [
 		'RangeError: nookPass: radius: found 0, expected a number above 0',
-		'TypeError: nookPass: found the option temporal, expected radius, quality, intensity, halfResolution, sky, tint',
+		'TypeError: nookPass: found the option temporal, expected radius, quality, intensity, halfResolution, sky, tint, excludeTransparent',
 		'Error: nookPass: found a renderer without WebGPU, expected WebGPU; NookPass of nook-ao is for WebGL 2',
 		'Error: nookPass: found logarithmicDepthBuffer, expected a linear or reversed depth buffer',
 	]);

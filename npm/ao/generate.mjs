@@ -14,7 +14,8 @@ const qualities = { low: [1, 3], medium: [1, 4], high: [3, 6] }; // slices, and 
 writeFileSync(join(scratch, 'package.json'), '{"type": "module"}');
 const run = (...words) => execFileSync(nook, words, { cwd: scratch, stdio: ['ignore', 'ignore', 'inherit'] });
 
-const bare = text => text.split('\n').map(line => line.replace(/\s*\/\/.*/, '').trim()).filter(line => line);
+// Lines without comments, indentation and the suffix of floats, which no language here needs.
+const bare = text => text.split('\n').map(line => line.replace(/\s*\/\/.*/, '').replace(/(\d\.\d+|\de-?\d+)f\b/g, '$1').trim()).filter(line => line);
 
 // A 32-bit float with as few digits as it needs.
 const shortest = value => [6, 7, 8, 9].map(digits => +value.toPrecision(digits)).find(short => Math.fround(short) === value);
@@ -71,7 +72,7 @@ const emitted = (quality, resolution, depth) => import(pathToFileURL(emit(qualit
 // Normals come from a texture, as NOOK_NORMAL has them in GLSL, unless depth is the device's.
 function wgslOf(quality, resolution, depth) {
 	const text = readFileSync(emit(quality, resolution, depth, ['wgsl', '--wgsl', '--main', 'fragment']), 'utf8')
-		.replace(/\blet (\w+): (f32|vec[234]f) = /g, 'let $1 = ').replace(/\b(\d+\.\d+)f\b/g, '$1'); // which WGSL infers
+		.replace(/\blet (\w+): (f32|vec[234]f) = /g, 'let $1 = '); // WGSL infers it
 	const computed = /(fn nookNormal\(pixel: vec2i\) -> vec3f\n\{\n)\treturn nookNormalFromDepth\(pixel\);/;
 	if (!computed.test(text)) throw new Error(`${quality}: found no nookNormal that computes, expected it in WGSL`);
 	return depth === 'device' ? text : text.replace(computed, '@group(0) @binding(2) var nook_normals: texture_2d<f32>;\n$1\treturn normalize(textureLoad(nook_normals, pixel, 0).xyz * 2.0f - 1.0f);');

@@ -7,7 +7,7 @@ export type View = 'combined' | 'off' | 'split' | 'visibility' | 'normals' | 'de
 
 /** All options are properties as well and can be set at any time. A value out of range throws a RangeError. */
 export interface NookAOOptions {
-	/** How far surfaces occlude each other, in units of the scene: the length of the rays that the picture stands for. Default 1.5. */
+	/** How far surfaces occlude each other, in units of the scene. Default 1.5. */
 	radius?: number;
 	/** Depths per pixel: 6, 8 or 36. Default 'medium'. */
 	quality?: Quality;
@@ -26,16 +26,16 @@ export interface CompositeOptions extends NookAOOptions {
 	view?: View;
 	/** Colour of full obscurance. Default black. */
 	tint?: ColorRepresentation;
-	/** 'pass' draws the scene's smooth normals in a pass of their own; 'depth' computes normals from depth. Default 'depth'. */
+	/** 'pass' draws the scene's own normals; 'depth' computes them from depth. Default 'depth'. */
 	normals?: 'depth' | 'pass';
-	/** The scene's materials come from useBakedVisibility: the lower visibility of bake and screen decides. Default false. */
+	/** With useBakedVisibility: the lower visibility of bake and screen decides. Default false. */
 	baked?: boolean;
 	/** Static occlusion of the level, drawn with every frame; the lower visibility decides. Default null. */
 	volumes?: NookVolumes | null;
 }
 
 export interface NookPassOptions extends CompositeOptions {
-	/** false: colours come from the pass before, and depth from its target's depth texture or a separate pass. Default true. */
+	/** false: colours come from the pass before, depth from its depth texture or a separate pass. Default true. */
 	renderScene?: boolean;
 	/** Samples per pixel of the frame, 0 to 16. Default 0. */
 	samples?: number;

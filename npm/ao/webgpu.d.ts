@@ -6,6 +6,8 @@ import type { NookAOOptions, Quality } from './index.js';
 export interface NookNodeOptions extends Omit<NookAOOptions, 'temporal'> {
 	/** Colour of full obscurance. Default black. */
 	tint?: ColorRepresentation;
+	/** Draws transparent objects over the obscurance. Default true. */
+	excludeTransparent?: boolean;
 }
 
 /** Draws a scene with ambient occlusion; a PassNode, whose colours are darkened. */
@@ -17,6 +19,7 @@ export interface NookPassNode extends PassNode {
 	sky: number;
 	get tint(): Color;
 	set tint(colour: ColorRepresentation);
+	excludeTransparent: boolean;
 	/** Visibility, 1 where open. */
 	getVisibilityNode(): Node;
 	/** Frees everything. Further calls do nothing. */

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 // The pass for WebGPURenderer: a node that draws a scene, and its visibility with the emitted WGSL on the renderer's own device.
 import { Color, DepthTexture, FloatType, HalfFloatType, NearestFilter, PassNode, RedFormat, RenderTarget } from 'three/webgpu';
-import { mix, passTexture, texture, uniform, vec4 } from 'three/tsl';
+import { passTexture } from 'three/tsl';
 import { fill, recipe, tiles } from './nook_slices.js';
 import { wgslOf } from './nook_slices_wgsl.js';
-import { defineOptions, rows } from './options.js';
+import { defineOptions, rows, truth } from './options.js';
 
 const { temporal, ...shared } = rows; // frames are not averaged here
 const passRows = {
 	...shared,
 	tint: { fallback: 0x000000, valid: value => value !== undefined && value !== null, expected: 'a colour', stored: value => new Color(value) },
+	excludeTransparent: truth(true),
 };
 
-// Linear depth and normals, once for all passes after it. limits.x: depth of the sky.
+// Linear depth and normals, once for all passes after it; and the factor of the colours. limits: depth of the sky, and the tint.
 const surface = `
 @group(0) @binding(13) var<uniform> limits: vec4f;
 struct Surface { @location(0) depth: f32, @location(1) normal: vec4f }
@@ -23,16 +24,20 @@ fn main_surface(@builtin(position) place: vec4f) -> Surface {
 	if (depth >= limits.x) { depth = NOOK_SKY; }
 	if (depth >= NOOK_SKY) { return Surface(NOOK_SKY, vec4f(0.5)); }
 	return Surface(depth, vec4f(0.5 + 0.5 * nookNormalFromDepth(pixel), 1.0));
+}
+@fragment
+fn main_factor(@builtin(position) place: vec4f) -> @location(0) vec4f {
+	return vec4f(mix(limits.yzw, vec3f(1.0), textureLoad(nook_packed, vec2i(place.xy), 0).r), 1.0);
 }`;
 const TEXTURES = { nook_depths: 1, nook_normals: 2, nook_packed: 11, nook_slices_tile: 12 }; // bindings
 
 /** Draws the passes of a module on a device. */
 class Drawer {
-	constructor(device, name, quality) {
+	constructor(device, name, quality, format) {
 		const visibility = GPUShaderStage.FRAGMENT;
 		const half = name.endsWith('_half');
 		this.device = device;
-		this.targets = [];
+		this.format = format;
 		this.buffers = [192, 16].map(size => device.createBuffer({ size, usage: GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST }));
 		this.layout = device.createBindGroupLayout({ entries: [
 			{ binding: 0, visibility, buffer: {} }, { binding: 13, visibility, buffer: {} },
@@ -40,8 +45,10 @@ class Drawer {
 		] });
 		const layout = device.createPipelineLayout({ bindGroupLayouts: [this.layout] });
 		const [first, others] = [wgslOf('device') + surface, wgslOf(name)].map(code => device.createShaderModule({ code }));
-		const pipeline = (module, entry, ...formats) => device.createRenderPipeline({ layout, vertex: { module, entryPoint: 'triangle' },
-			fragment: { module, entryPoint: `main_${entry}`, targets: formats.map(format => ({ format })) } });
+		const pipelineOf = (module, entry, targets) => device.createRenderPipeline({ layout, vertex: { module, entryPoint: 'triangle' },
+			fragment: { module, entryPoint: `main_${entry}`, targets } });
+		const pipeline = (module, entry, ...formats) => pipelineOf(module, entry, formats.map(format => ({ format })));
+		const times = (srcFactor, dstFactor) => ({ operation: 'add', srcFactor, dstFactor });
 		// [pipeline, names of its targets, size of them, name of what it reads as nook_packed]
 		this.passes = [
 			[pipeline(first, 'surface', 'r32float', 'rgba8unorm'), ['depths', 'normals'], 1],
@@ -50,6 +57,7 @@ class Drawer {
 			...(half ? [
 				[pipeline(others, 'nookBilateralYOfSurface', 'rgba32float'), ['surfaces'], 2, 'rows'], [pipeline(others, 'nookSlicesFull', 'r16float'), ['output'], 1, 'surfaces'],
 			] : [[pipeline(others, 'nookBilateralY', 'r16float'), ['output'], 1, 'rows']]),
+			[pipelineOf(first, 'factor', [{ format, blend: { color: times('zero', 'src'), alpha: times('zero', 'one') } }]), ['colours'], 1, 'output'],
 		];
 		this.formats = { depths: 'r32float', normals: 'rgba8unorm', linked: 'rgba8unorm', rows: 'rgba8unorm', surfaces: 'rgba32float' };
 		this.empty = this.texture(1, 1, 'rgba8unorm');
@@ -59,7 +67,7 @@ class Drawer {
 	}
 
 	texture(width, height, format) {
-		return this.device.createTexture({ size: [width, height], format, usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.COPY_DST | GPUTextureUsage.COPY_SRC });
+		return this.device.createTexture({ size: [width, height], format, usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.COPY_DST });
 	}
 
 	setSize(width, height) {
@@ -68,19 +76,19 @@ class Drawer {
 		for (const one of Object.values(this.own ?? {})) one.destroy();
 		this.own = {};
 		for (const [, names, part] of this.passes) {
-			for (const name of names.filter(one => one !== 'output')) this.own[name] = this.texture(Math.ceil(width / part), Math.ceil(height / part), this.formats[name]);
+			for (const name of names.filter(one => this.formats[one])) this.own[name] = this.texture(Math.ceil(width / part), Math.ceil(height / part), this.formats[name]);
 		}
 	}
 
-	draw(depths, output, block, sky) {
+	draw(depths, outputs, block, limits) {
 		const { device } = this;
-		[block, new Float32Array([sky, 0, 0, 0])].forEach((bytes, i) => device.queue.writeBuffer(this.buffers[i], 0, bytes));
+		[block, new Float32Array(limits)].forEach((bytes, i) => device.queue.writeBuffer(this.buffers[i], 0, bytes));
 		const encoder = device.createCommandEncoder();
-		const textures = { ...this.own, output };
+		const textures = { ...this.own, ...outputs };
 		for (const [pipeline, names, , from] of this.passes) {
 			const read = { nook_depths: textures.depths, nook_normals: textures.normals, nook_packed: textures[from] ?? this.empty, nook_slices_tile: this.tile };
 			if (names[0] === 'depths') Object.assign(read, { nook_depths: null, nook_normals: this.empty });
-			const pass = encoder.beginRenderPass({ colorAttachments: names.map(name => ({ view: textures[name].createView(), loadOp: 'clear', storeOp: 'store' })) });
+			const pass = encoder.beginRenderPass({ colorAttachments: names.map(name => ({ view: textures[name].createView(), loadOp: name === 'colours' ? 'load' : 'clear', storeOp: 'store' })) });
 			pass.setPipeline(pipeline);
 			pass.setBindGroup(0, device.createBindGroup({ layout: this.layout, entries: [
 				{ binding: 0, resource: { buffer: this.buffers[0] } }, { binding: 13, resource: { buffer: this.buffers[1] } },
@@ -107,7 +115,6 @@ class NookPassNode extends PassNode {
 		defineOptions(this, 'nookPass', passRows, options);
 		this._output = new RenderTarget(1, 1, { type: HalfFloatType, format: RedFormat, depthBuffer: false, minFilter: NearestFilter, magFilter: NearestFilter });
 		this._output.texture.name = 'visibility';
-		this._tint = uniform(new Color());
 		this._drawer = null;
 	}
 
@@ -116,30 +123,38 @@ class NookPassNode extends PassNode {
 		return passTexture(this, this._output.texture).r;
 	}
 
-	setup(builder) {
-		const colours = super.setup(builder);
-		return vec4(colours.rgb.mul(mix(this._tint, vec4(1).rgb, texture(this._output.texture).r)), colours.a);
-	}
-
 	updateBefore(frame) {
 		const { renderer } = frame;
 		if (renderer.backend.isWebGPUBackend !== true) throw new Error('nookPass: found a renderer without WebGPU, expected WebGPU; NookPass of nook-ao is for WebGL 2');
 		if (renderer.logarithmicDepthBuffer === true) throw new Error('nookPass: found logarithmicDepthBuffer, expected a linear or reversed depth buffer');
+		// Opaque objects, their obscurance, and transparent objects over it.
+		let later = false;
+		if (this.excludeTransparent) this.scene.traverseVisible(({ material }) => { later ||= [material ?? []].flat().some(one => one.transparent); });
+		const kept = [this.opaque, this.transparent, this.autoClear];
+		if (later) this.transparent = false;
 		super.updateBefore(frame);
 		const { width, height } = this.renderTarget;
-		if (width === 0 || height === 0) return;
-		this._tint.value.copy(this.tint);
-		this._output.setSize(width, height);
-		renderer.initRenderTarget(this._output);
-		this._draw(renderer, width, height);
+		if (width > 0 && height > 0) {
+			this._output.setSize(width, height);
+			renderer.initRenderTarget(this._output);
+			this._draw(renderer, width, height);
+		}
+		if (later) {
+			const { background } = this.scene;
+			this.scene.background = null; // a colour would clear what was drawn
+			Object.assign(this, { opaque: false, transparent: kept[1], autoClear: false });
+			super.updateBefore(frame);
+			this.scene.background = background;
+		}
+		[this.opaque, this.transparent, this.autoClear] = kept;
 	}
 
 	_draw(renderer, width, height) {
-		const { device } = renderer.backend, textureOf = one => renderer.backend.get(one).texture;
+		const { device } = renderer.backend, textureOf = one => renderer.backend.get(one).texture, colours = textureOf(this.renderTarget.texture);
 		const name = `${this.quality}${this.halfResolution ? '_half' : ''}`;
-		if (this._drawer?.device !== device || this._drawer.name !== name) {
+		if (this._drawer?.device !== device || this._drawer.name !== name || this._drawer.format !== colours.format) {
 			this._drawer?.dispose();
-			this._drawer = Object.assign(new Drawer(device, name, this.quality), { name });
+			this._drawer = Object.assign(new Drawer(device, name, this.quality, colours.format), { name });
 		}
 		this._drawer.setSize(width, height);
 		const { radius, slice_thickness, strength, power } = recipe;
@@ -152,7 +167,7 @@ class NookPassNode extends PassNode {
 		} catch (error) {
 			throw new RangeError(`nookPass: camera: ${error.message}`);
 		}
-		this._drawer.draw(textureOf(this.renderTarget.depthTexture), textureOf(this._output.texture), block, Math.min(this.sky, 1e30));
+		this._drawer.draw(textureOf(this.renderTarget.depthTexture), { output: textureOf(this._output.texture), colours }, block, [Math.min(this.sky, 1e30), ...this.tint]);
 	}
 
 	dispose() {

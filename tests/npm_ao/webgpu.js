@@ -24,8 +24,8 @@ gl.setSize(width, height);
 said.webgpu = three.backend.isWebGPUBackend === true;
 
 // Pictures as numbers, rows from the top.
-function withGl(options, camera = perspective()) {
-	const pass = new NookPass(sceneOf().scene, camera, width, height, options);
+function withGl(options, camera = perspective(), scene = sceneOf().scene) {
+	const pass = new NookPass(scene, camera, width, height, options);
 	const composer = new EffectComposer(gl, new THREE.WebGLRenderTarget(width, height, { type: THREE.HalfFloatType }));
 	composer.renderToScreen = false;
 	composer.addPass(pass);
@@ -54,8 +54,8 @@ function pipelineOf(renderer, node, visibility) {
 	return pipeline;
 }
 
-async function withGpu(options, { camera = perspective(), renderer = three, visibility = true } = {}) {
-	const node = nookPass(sceneOf().scene, camera, options);
+async function withGpu(options, { camera = perspective(), renderer = three, visibility = true, scene = sceneOf().scene } = {}) {
+	const node = nookPass(scene, camera, options);
 	const picture = await pictureOf(renderer, pipelineOf(renderer, node, visibility));
 	node.dispose();
 	node.dispose();
@@ -81,6 +81,15 @@ said.tint = apart(withGl({ tint: 0x408000 }), await withGpu({ tint: 0x408000 }, 
 said.radius = apart(withGl({ radius: 0.5, intensity: 2, ...seen }), await withGpu({ radius: 0.5, intensity: 2 }));
 said.sky = apart(withGl({ sky: 5, ...seen }), await withGpu({ sky: 5 }));
 said.orthographic = apart(withGl(seen, parallel()), await withGpu({}, { camera: parallel() }));
+// Glass in front of everything: over the obscurance, or darkened with it.
+const withGlass = () => {
+	const { scene, box } = sceneOf();
+	box(0, 1, 1, 2, 2, 0.02, new THREE.MeshBasicMaterial({ color: 0xffffff, transparent: true, opacity: 0.5, depthWrite: false }));
+	return scene;
+};
+const glass = await withGpu({}, { visibility: false, scene: withGlass() });
+said.transparent = apart(withGl({}, perspective(), withGlass()), glass);
+said.darkened = apart(await withGpu({ excludeTransparent: false }, { visibility: false, scene: withGlass() }), glass);
 const reversed = await rendererOf({ reversedDepthBuffer: true });
 said.reversed = apart(base, await withGpu({}, { renderer: reversed }));
 reversed.dispose();

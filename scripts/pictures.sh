@@ -47,11 +47,11 @@ for browser in chromium chromium-browser google-chrome; do
 	fi
 done
 
-# The live page, if the npm package is built: both halves.
-npm=$(cd "$(dirname "$0")/.." && pwd)/build/wasm/npm
-if [ -s "$npm/nook.wasm" ] && command -v "$browser" >"$scratch/out" && command -v node >"$scratch/out"; then
-	node "$(dirname "$0")/../site/build.mjs" --nook "$nook" --npm "$npm" -o "$scratch/live.html"
-	echo 'while (!document.documentElement.dataset.settled) await new Promise(later => setTimeout(later, 100));' |
-		node "$(dirname "$0")/../tests/page_driver.cjs" "$browser" "$scratch/live.html" --width 1000 --tall 1960 --screenshot "$scratch/live.png" >"$scratch/out"
+# The live site, if the npm package is built and scripts/site.sh has installed Vite: its first two parts.
+root=$(cd "$(dirname "$0")/.." && pwd)
+if [ -s "$root/build/wasm/npm/nook.wasm" ] && [ -e "$root/build/site_modules/installed" ] && command -v "$browser" >"$scratch/out" && command -v node >"$scratch/out"; then
+	node "$root/site/build.mjs" --nook "$nook" -o "$scratch/live.html"
+	echo 'const drawn = document.documentElement.dataset; while (!drawn.settled || !drawn.started) await new Promise(later => setTimeout(later, 100));' |
+		node "$root/tests/page_driver.cjs" "$browser" "$scratch/live.html" --width 1000 --tall 2000 --screenshot "$scratch/live.png" >"$scratch/out"
 	oiiotool "$scratch/live.png" --resize 640x0 -o "$folder/live_page.png"
 fi

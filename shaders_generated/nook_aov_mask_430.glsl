@@ -14,10 +14,10 @@
 // Both headers come with nook, are MIT, and have no dependencies.
 //
 // Once: nook_volumes::Volumes::open. Upload corners() and polygons(): storage buffers nook_corners and
-// nook_polygons. With prisms, vertices() as well, as the attribute nook_point (location 1, four GL_UNSIGNED_SHORT, 8 bytes apart),
-// and indices() as elements (GL_UNSIGNED_SHORT).
-// Every frame: nook_volumes::Frame::set; its block is the uniform block NookVolumes; Frame::seen of every cluster makes the storage
-// buffer nook_clusters.
+// nook_polygons. With prisms, vertices() as well, as the attribute nook_point (location 1, four
+// GL_UNSIGNED_SHORT, 8 bytes apart), and indices() as elements (GL_UNSIGNED_SHORT).
+// Every frame: nook_volumes::Frame::set; its block is the uniform block NookVolumes; Frame::seen of every cluster makes the
+// storage buffer nook_clusters.
 //
 // Drawing, for each cluster i with Frame::inSight:
 //   glVertexAttribI1i(0, i);
@@ -25,10 +25,14 @@
 //   glDrawElementsBaseVertex(GL_TRIANGLES, index_count, GL_UNSIGNED_SHORT, 2 * first_index, first_vertex);
 // or all in one call of glMultiDrawArraysIndirect (OpenGL 4.3), where nook_cluster (location 0) is an attribute with divisor 1 of the
 // numbers 0, 1, 2 ..., and i the base instance.
+// To pass the number of the cluster in another way, define NOOK_CLUSTER first: as a uniform of yours, gl_DrawID, or where the base
+// instance is i, gl_InstanceIndex (Vulkan).
 // States: depth test against the depth buffer of the frame, no depth writes; depth clamp; front faces counter-clockwise (clockwise where
 // Frame::mirrored). Clusters that do not contain the eye: cull back faces, depth test "less or equal". Clusters that do
 // (Frame::holdsEye): cull front faces, depth test "greater or equal"; reversed depth has the opposite tests. With EXT_depth_bounds_test
 // and one call per cluster, glDepthBoundsEXT with Frame::depthBounds skips fragments of volumes that float between the eye and a surface.
+// Without depth clamp (WebGL has it as EXT_depth_clamp): define NOOK_ANY_DEPTH for the vertex stage and draw without a depth test. The
+// picture is the same, but more fragments find that they have nothing to add.
 // Fewer fragments: define NOOK_CHOOSE_FACES for the vertex stage and draw all clusters in sight twice, first with the states of clusters
 // that do not contain the eye and nook_faces = 1, then with the other states and nook_faces = 2. Each volume is then drawn by the faces,
 // front or back, that seem to cover fewer pixels without any effect; to decide, the vertex stage reads two depths per corner of the
@@ -49,14 +53,14 @@
 #if __VERSION__ < 430
 #error nook: this module needs #version 430 or later
 #endif
-#ifndef NOOK_BLOCK_BINDING
-#define NOOK_BLOCK_BINDING 0
-#endif
 #ifndef NOOK_SKY
 #define NOOK_SKY 1e30
 #endif
 
 // The uniform block, nook_volumes::Block of nook_volumes_draw.h, which Frame::set fills.
+#ifndef NOOK_BLOCK_BINDING
+#define NOOK_BLOCK_BINDING 0
+#endif
 layout(std140, binding = NOOK_BLOCK_BINDING) uniform NookVolumes
 {
 	vec2 size; // width, height in pixels
@@ -87,25 +91,24 @@ layout(std140, binding = NOOK_BLOCK_BINDING) uniform NookVolumes
 
 #ifdef NOOK_VERTEX
 
+// Storage buffers: corners and polygons of the file, and the clusters of this frame.
 #ifndef NOOK_CORNERS_BINDING
 #define NOOK_CORNERS_BINDING 0
 #endif
-#ifndef NOOK_POLYGONS_BINDING
-#define NOOK_POLYGONS_BINDING 1
-#endif
-#ifndef NOOK_CLUSTERS_BINDING
-#define NOOK_CLUSTERS_BINDING 2
-#endif
-
-// Storage buffers: corners and polygons of the file, and the clusters of this frame.
 layout(std430, binding = NOOK_CORNERS_BINDING) readonly buffer NookCorners
 {
 	uvec2 nook_corners[];
 };
+#ifndef NOOK_POLYGONS_BINDING
+#define NOOK_POLYGONS_BINDING 1
+#endif
 layout(std430, binding = NOOK_POLYGONS_BINDING) readonly buffer NookPolygons
 {
 	uvec2 nook_polygons[];
 };
+#ifndef NOOK_CLUSTERS_BINDING
+#define NOOK_CLUSTERS_BINDING 2
+#endif
 layout(std430, binding = NOOK_CLUSTERS_BINDING) readonly buffer NookClusters
 {
 	uvec4 nook_clusters[];
@@ -149,10 +152,11 @@ vec3 nookCross(vec3 a, vec3 b)
 
 #ifdef NOOK_CHOOSE_FACES
 
+// 1: keeps volumes that are drawn by their front faces, 2: by their back faces, 0: keeps all.
 #ifndef NOOK_FACES_LOCATION
 #define NOOK_FACES_LOCATION 0
 #endif
-layout(location = NOOK_FACES_LOCATION) uniform int nook_faces; // 1: keeps volumes that are drawn by their front faces, 2: by their back faces, 0: keeps all
+layout(location = NOOK_FACES_LOCATION) uniform int nook_faces;
 
 #ifndef NOOK_DEPTH // linear depth: distance along the view direction, > 0, metres; NOOK_SKY or more without a surface
 #ifndef NOOK_DEPTHS_BINDING
@@ -195,7 +199,7 @@ int nookSurfaceAt(vec3 point)
 	// The inverse of nookPosition.
 	float x = (dot(nook.right.xyz, point) - depth * nook.across_x.y - nook.aside.x) / (w * nook.across_x.x);
 	float y = (dot(nook.up.xyz, point) - depth * nook.across_y.y - nook.aside.y) / (w * nook.across_y.x);
-	vec2 place = clamp(vec2(x + 1.0, 1.0 - y) * 0.5, 0.0, 1.0) * nook.size + nook.origin;
+	vec2 place = clamp(vec2(x + 1.0, 1.0 - y) * 0.5, vec2(0.0, 0.0), vec2(1.0, 1.0)) * nook.size + nook.origin;
 	return nookDepth(ivec2(min(place, nook.size + nook.origin - 1.0))) > depth ? 1 : -1;
 }
 
@@ -214,7 +218,7 @@ bool nookBackFaces()
 	float slack = 1e-3 * reach + 1e-5 * length(a);
 	float height = -dot(front, a);
 	bool outside = height > reach + slack || height < low - slack;
-	vec3 middle = vec3(0.0);
+	vec3 middle = vec3(0.0, 0.0, 0.0);
 	for (int i = 0; i < count; ++i)
 	{
 		vec3 b = nook_offset + nook_step * vec3(nookPackedCorner(first + i).xyz);
@@ -253,7 +257,7 @@ vec3 nookFrontOf(int first, int count)
 {
 	vec3 start = vec3(nookPackedCorner(first).xyz);
 	vec3 before = nook_step * (vec3(nookPackedCorner(first + 1).xyz) - start);
-	vec3 sum = vec3(0.0);
+	vec3 sum = vec3(0.0, 0.0, 0.0);
 	for (int i = 2; i < count; ++i)
 	{
 		vec3 after = nook_step * (vec3(nookPackedCorner(first + i).xyz) - start);
@@ -328,7 +332,7 @@ void nookSetPolygon(int cluster, int polygon)
 
 // Layout polygons. Each corner has twelve vertices: two triangles of the side that its edge makes, one triangle of the lower
 // face and one of the upper face.
-void nookPolygonVertex(int cluster, int vertex)
+vec4 nookPolygonVertex(int cluster, int vertex)
 {
 	int corner = vertex / 12;
 	int part = vertex % 12;
@@ -336,26 +340,24 @@ void nookPolygonVertex(int cluster, int vertex)
 #ifdef NOOK_CHOOSE_FACES
 	if (!nookIsAsked())
 	{
-		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside the picture, as all vertices of this polygon: nothing is drawn
-		return;
+		return vec4(2.0, 2.0, 2.0, 1.0); // outside the picture, as all vertices of this polygon: nothing is drawn
 	}
 #endif
 	int i = corner - nook_polygon.x;
 	int next = i + 1 < nook_polygon.y ? i + 1 : 0;
 	int at = part == 6 || part == 9 ? 0 : part == 0 || part == 3 || part == 5 || part == 8 || part == 10 ? i : next;
 	int ring = part == 2 || part == 4 || part == 5 || part > 8 ? 1 : 0;
-	gl_Position = nook.clip * vec4(nookPrismPoint(at, ring), 1.0);
+	return nook.clip * vec4(nookPrismPoint(at, ring), 1.0);
 }
 
 // Layout prisms: a vertex of the file.
-void nookPrismVertex(int cluster, uvec4 point)
+vec4 nookPrismVertex(int cluster, uvec4 point)
 {
 	nookSetPolygon(cluster, int(point.w));
 #ifdef NOOK_CHOOSE_FACES
 	if (!nookIsAsked())
 	{
-		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside the picture, as all vertices of this polygon: nothing is drawn
-		return;
+		return vec4(2.0, 2.0, 2.0, 1.0); // outside the picture, as all vertices of this polygon: nothing is drawn
 	}
 #endif
 	vec3 offset = uintBitsToFloat(nookSeenCluster(cluster, 2).xyz);
@@ -363,10 +365,13 @@ void nookPrismVertex(int cluster, uvec4 point)
 	vec3 at = offset + step * vec3(point.xyz);
 	vec3 corner = nook_offset + nook_step * vec3(nookPackedCorner(nook_polygon.x).xyz);
 	bool lower = nook_polygon.z == 0 && dot(nook_front.xyz, at - corner) < 0.5 * nook.radius * nookShare().x;
-	gl_Position = nook.clip * vec4(at - (lower ? nookBehind() : 0.0) * nook_front.xyz, 1.0);
+	return nook.clip * vec4(at - (lower ? nookBehind() : 0.0) * nook_front.xyz, 1.0);
 }
 
-layout(location = 0) in int nook_cluster; // number of the cluster, the same for all its vertices
+#ifndef NOOK_CLUSTER // number of the cluster, the same for all its vertices
+layout(location = 0) in int nook_cluster;
+#define NOOK_CLUSTER nook_cluster
+#endif
 #ifdef NOOK_PRISMS
 layout(location = 1) in uvec4 nook_point; // a vertex of the file
 #endif
@@ -374,9 +379,12 @@ layout(location = 1) in uvec4 nook_point; // a vertex of the file
 void main()
 {
 #ifdef NOOK_PRISMS
-	nookPrismVertex(nook_cluster, nook_point);
+	gl_Position = nookPrismVertex(NOOK_CLUSTER, nook_point);
 #else
-	nookPolygonVertex(nook_cluster, gl_VertexID);
+	gl_Position = nookPolygonVertex(NOOK_CLUSTER, gl_VertexID);
+#endif
+#ifdef NOOK_ANY_DEPTH
+	gl_Position.z = 0.0; // neither the near nor the far plane cuts it
 #endif
 }
 #endif // NOOK_VERTEX
@@ -578,25 +586,24 @@ uvec4 nookHalfSpaceTexel(ivec2 texel, int four)
 
 #ifdef NOOK_FRAGMENT
 
+// Storage buffers: corners and polygons of the file, and the clusters of this frame.
 #ifndef NOOK_CORNERS_BINDING
 #define NOOK_CORNERS_BINDING 0
 #endif
-#ifndef NOOK_POLYGONS_BINDING
-#define NOOK_POLYGONS_BINDING 1
-#endif
-#ifndef NOOK_CLUSTERS_BINDING
-#define NOOK_CLUSTERS_BINDING 2
-#endif
-
-// Storage buffers: corners and polygons of the file, and the clusters of this frame.
 layout(std430, binding = NOOK_CORNERS_BINDING) readonly buffer NookCorners
 {
 	uvec2 nook_corners[];
 };
+#ifndef NOOK_POLYGONS_BINDING
+#define NOOK_POLYGONS_BINDING 1
+#endif
 layout(std430, binding = NOOK_POLYGONS_BINDING) readonly buffer NookPolygons
 {
 	uvec2 nook_polygons[];
 };
+#ifndef NOOK_CLUSTERS_BINDING
+#define NOOK_CLUSTERS_BINDING 2
+#endif
 layout(std430, binding = NOOK_CLUSTERS_BINDING) readonly buffer NookClusters
 {
 	uvec4 nook_clusters[];
@@ -864,7 +871,7 @@ vec3 nookReceive(ivec2 pixel)
 	float depth = nookDepth(pixel);
 	if (depth >= NOOK_SKY)
 	{
-		return vec3(0.0);
+		return vec3(0.0, 0.0, 0.0);
 	}
 	nook_base = nook_offset - nookTurned(nookPosition(pixel, depth));
 	nook_bias = max(nook.plane_bias, nookDepthError(depth) + nook.position_error);
@@ -892,7 +899,7 @@ float nookMaskHeight(vec3 normal)
 uvec4 nookCovered(int four, vec3 normal, float height)
 {
 	return nookMaskBits(nook_polygon.y, four, normal, nook_front.xyz, height, nook_front.w, nook_polygon.x, nook.radius,
-		uvec4(0xffffffffu));
+		uvec4(0xffffffffu, 0xffffffffu, 0xffffffffu, 0xffffffffu));
 }
 
 layout(location = 0) out uvec4 nook_bits_0;
@@ -911,9 +918,9 @@ void main()
 
 uint nookBitsOf(uvec4 words)
 {
-	uvec4 n = words - ((words >> 1) & uvec4(0x55555555u));
-	n = (n & uvec4(0x33333333u)) + ((n >> 2) & uvec4(0x33333333u));
-	n = (((n + (n >> 4)) & uvec4(0x0f0f0f0fu)) * 0x01010101u) >> 24;
+	uvec4 n = words - ((words >> 1) & uvec4(0x55555555u, 0x55555555u, 0x55555555u, 0x55555555u));
+	n = (n & uvec4(0x33333333u, 0x33333333u, 0x33333333u, 0x33333333u)) + ((n >> 2) & uvec4(0x33333333u, 0x33333333u, 0x33333333u, 0x33333333u));
+	n = (((n + (n >> 4)) & uvec4(0x0f0f0f0fu, 0x0f0f0f0fu, 0x0f0f0f0fu, 0x0f0f0f0fu)) * 0x01010101u) >> 24;
 	return n.x + n.y + n.z + n.w;
 }
 

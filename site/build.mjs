@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level, the npm package and the catalogue → one page that makes patterns and shades the level in a browser. Usage:
-// node site/build.mjs [LEVEL] [OPTIONS] -o PAGE.html [-- OPTIONS OF THE LEVEL], with the options of docs/reference/live.md. Its data come
-// from nook's verbs. The same bytes come from the same inputs; exit codes are those of nook.
+// A level, the npm packages and the catalogue → a static site that makes patterns and shades the level in a browser, built with Vite.
+// Usage: node site/build.mjs [LEVEL] [OPTIONS] -o FOLDER|PAGE.html [-- OPTIONS OF THE LEVEL], with the options of
+// docs/reference/live.md; scripts/site.sh installs what it needs. Its data come from nook's verbs. The same bytes come from the same
+// inputs; exit codes are those of nook.
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
-import { readExr, readGlb } from './files.mjs';
+import { readExr, readGlb, writePng } from './files.mjs';
+import { bundle } from './vite.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const source = resolve(here, '..');
@@ -26,7 +28,8 @@ const OPTIONS = {
 	output: { type: 'string', short: 'o' }, nook: { type: 'string', default: join(source, 'build/release/tools/nook') },
 	npm: { type: 'string', default: join(source, 'build/wasm/npm') }, catalogue: { type: 'string', default: join(source, 'patterns') },
 	camera: { type: 'string', default: '' }, size: { type: 'string', default: '640x360' }, radius: { type: 'string' },
-	rays: { type: 'string', default: '256' },
+	rays: { type: 'string', default: '256' }, modules: { type: 'string', default: join(source, 'build/site_modules/node_modules') },
+	docs: { type: 'string', default: '' },
 };
 
 function settingsOf(words) {
@@ -39,7 +42,7 @@ function settingsOf(words) {
 	}
 	const { values, positionals } = parsed;
 	if (positionals.length > 1) throw new Failure(1, `LEVEL: found ${positionals.length} of them, expected one`);
-	if (!/\.html$/.test(values.output || '')) throw new Failure(1, `-o: found '${values.output || ''}', expected a page, NAME.html`);
+	if (!values.output) throw new Failure(1, "-o: missing, expected a folder or a page, NAME.html");
 	if (!/^\d+x\d+$/.test(values.size)) throw new Failure(1, `--size: found '${values.size}', expected WIDTHxHEIGHT`);
 	if (/^auto:(?!1$)/.test(values.camera)) throw new Failure(1, `--camera: found '${values.camera}', expected a name, or auto:1: the page has one view`);
 	return { ...values, level: positionals[0] || 'builtin:suburb', load };
@@ -53,7 +56,7 @@ function commandOf(settings) {
 	const level = settings.level.startsWith('builtin:') ? settings.level : basename(settings.level);
 	const given = ['camera', 'size', 'radius', 'rays'].filter(name => settings[name] !== (OPTIONS[name].default));
 	return `node site/build.mjs${level === 'builtin:suburb' ? '' : ` ${shellWord(level)}`}`
-		+ given.map(name => ` --${name} ${shellWord(settings[name])}`).join('') + ' -o live.html' + (settings.load.length ? ` --${wordsOf(settings.load)}` : '');
+		+ given.map(name => ` --${name} ${shellWord(settings[name])}`).join('') + ' -o site' + (settings.load.length ? ` --${wordsOf(settings.load)}` : '');
 }
 
 // ---- nook
@@ -77,27 +80,18 @@ function rounded(value) {
 	return short !== 0 && (size < 1e-4 || size >= 1e6) ? short.toExponential().replace(/e(.)(\d)$/, 'e$10$2') : String(short);
 }
 
-// ---- The program, as a worker of the page
+// ---- What the site is made of
 
 function needFile(folderName, name, option, expected) {
 	if (!existsSync(join(folderName, name))) throw new Failure(2, `${option}: found no ${name} in ${folderName}, expected ${expected}`);
 	return join(folderName, name);
 }
 
-function replaceOnce(path, found, by) {
-	const text = readFileSync(path, 'utf8');
-	if (!text.includes(found)) throw new Failure(3, `${path}: found no '${found}', expected the npm package of this version`);
-	return text.replace(found, () => by);
-}
-
-function programOf(settings, version) {
+function checkPackage(settings, version) {
 	const file = name => needFile(settings.npm, name, '--npm', "the npm package of 'cmake --preset wasm && cmake --build --preset wasm'");
 	const wasm = readFileSync(file('nook.wasm')), own = JSON.parse(readFileSync(file('package.json'), 'utf8')).version;
 	if (own !== version) throw new Failure(3, `${file('package.json')}: version: found ${own}, expected ${version}, that of the program nook`);
 	if (wasm.toString('latin1', 0, 4) !== '\0asm') throw new Failure(3, `${file('nook.wasm')}: found ${wasm.length} bytes, expected WebAssembly`);
-	const module = replaceOnce(file('nook_module.js'), 'export default Module;', ''); // one script of both: a blob imports no file
-	const calls = replaceOnce(file('calls.js'), "import makeModule from './nook_module.js';", 'const makeModule = Module;').replaceAll('export ', '');
-	return { worker: module + calls + readFileSync(join(here, 'worker.js'), 'utf8'), wasm: wasm.toString('base64') };
 }
 
 // ---- The catalogue: measures as nook info prints them
@@ -135,13 +129,45 @@ function viewOf(settings) {
 	const matrix = gbuffer.attributes.worldToCamera64, axis = k => [0, 1, 2].map(i => matrix[4 * i + k]);
 	const eye = [0, 1, 2].map(k => -[0, 1, 2].reduce((sum, i) => sum + matrix[4 * k + i] * matrix[12 + i], 0));
 	const { triangles, masks } = readGlb(join(folder, 'level.glb'), eye);
+	const world_from_camera = [0, 1, 2].flatMap(k => [...axis(k), 0]).concat(eye, 1);
 	const camera = gbuffer.attributes['nook:camera'];
-	return { camera_option: /^auto/.test(chosen) ? 'auto:1' : camera, view: {
+	return { chosen, camera_option: /^auto/.test(chosen) ? 'auto:1' : camera, view: {
 		level: settings.level.startsWith('builtin:') ? settings.level : basename(settings.level), camera, triangle_count: info.triangles,
 		width: gbuffer.width, height: gbuffer.height, radius_m: radius, reference_error: JSON.parse(made('rays.json')).rms_standard_error,
-		projection: gbuffer.attributes.projection64, world_from_camera: [0, 1, 2].flatMap(k => [...axis(k), 0]).concat(eye, 1),
+		projection: gbuffer.attributes.projection64, world_from_camera,
 		depth: base64(gbuffer.channels.Z.map(z => Number.isFinite(z) ? z : 1e30)), normals: normalsOf(gbuffer.channels),
 		reference: base64(Uint8Array.from(rays.channels.visibility, v => Math.max(0, Math.min(255, 255 * v + 0.5)))), triangles, masks } };
+}
+
+// ---- The level in three.js, with rays of a larger picture
+
+const DECODED = /^(KHR_materials_\w+|KHR_texture_transform|KHR_mesh_quantization|EXT_meshopt_compression|KHR_meshopt_compression|EXT_texture_webp|KHR_lights_punctual)$/;
+
+// The JSON of a binary glTF that is whole in its file; null for other levels.
+function wholeGlb(path) {
+	if (!/\.glb$/i.test(path)) return null;
+	const bytes = readFileSync(path);
+	if (bytes.length < 20 || bytes.toString('latin1', 0, 4) !== 'glTF') return null;
+	const json = JSON.parse(bytes.toString('utf8', 20, 20 + bytes.readUInt32LE(12)));
+	const outside = [...(json.buffers ?? []), ...(json.images ?? [])].some(({ uri }) => uri !== undefined && !uri.startsWith('data:'));
+	return outside || !(json.extensionsRequired ?? []).every(name => DECODED.test(name)) ? null : bytes;
+}
+
+// The level's own file where the page can read it and the options change nothing in it, or what nook level made of it.
+function levelOf(settings, view, camera) {
+	const own = settings.level.startsWith('builtin:') || settings.load.length > 0 ? null : wholeGlb(settings.level);
+	const [width, height] = settings.size.split('x').map(side => 2 * Number(side));
+	run('gbuffer', settings.level, ...settings.load, ...(camera ? ['--camera', camera] : []), '--size', `${width}x${height}`, '-o', 'large.exr');
+	run('reference', settings.level, ...settings.load, '--gbuffer', 'large.exr', '--falloff', 'linear', '--radius', String(view.radius_m), '--rays', settings.rays, '-o', 'large_rays.exr');
+	const { channels: { Z } } = readExr(join(folder, 'large.exr')), { channels: { visibility } } = readExr(join(folder, 'large_rays.exr'));
+	const pixels = Buffer.alloc(3 * width * height); // grey; sky is blue
+	visibility.forEach((value, i) => {
+		if (Z[i] < 1e10) pixels.fill(Math.max(0, Math.min(255, Math.floor(255 * value + 0.5))), 3 * i, 3 * i + 3);
+		else pixels[3 * i + 2] = 255;
+	});
+	const { level, camera: name, world_from_camera, projection, radius_m } = view;
+	return { level, camera: name, width, height, radius_m, rays: Number(settings.rays), world_from_camera, projection, own: own !== null,
+		glb: (own ?? readFileSync(join(folder, 'level.glb'))).toString('base64'), png: writePng(width, height, pixels).toString('base64') };
 }
 
 // Few surfaces have normals of their own: a list of them, and each pixel's place in it.
@@ -222,41 +248,63 @@ function shadingOf(radius) {
 	return { members: all[0].members, methods: all.map(({ method }) => method) };
 }
 
-// ---- The page
+// ---- The site
 
-// Each slot of the template by its text, in one pass: a text may hold what looks like a slot.
-const filled = (page, slots) => page.replace(new RegExp(Object.keys(slots).join('|'), 'g'), slot => slots[slot]);
-
-function pageOf(data) {
-	const page = name => readFileSync(join(source, 'libsamples/page', name), 'utf8'), own = name => readFileSync(join(here, name), 'utf8');
-	const scripts = ['cells.js', 'gl.js', 'scene.js', 'shade.js', 'pattern.js', 'page.js'].map(own).join('');
-	return filled(page('frame.html'), { '@VERSION@': data.version, '@TITLE@': 'patterns and obscurance, live', '@STYLE@': page('page.css') + own('live.css'),
-		'@BODY@': own('live.html'), '@DATA@': JSON.stringify(data).replaceAll('<', '\\u003c'), '@SCRIPT@': page('parts.js') + page('pictures.js') + scripts });
+// A folder that is another's is kept.
+function checkOutput({ output, docs }) {
+	if (!/\.html$/.test(output) && existsSync(output) && !existsSync(join(output, 'site.js')) && readdirSync(output).length > 0) {
+		throw new Failure(2, `${output}: found other files in it, expected an empty folder or a site to replace`);
+	}
+	if (docs && /\.html$/.test(output)) throw new Failure(1, `--docs: found with the page ${output}, expected a folder`);
+	if (docs) needFile(docs, 'index.html', '--docs', 'the pages of scripts/docs.sh');
 }
 
-function build(settings) {
+function write(settings, files) {
+	const { output, docs } = settings, part = `${output}.${process.pid}.part`, whole = /\.html$/.test(output);
+	try {
+		if (whole) writeFileSync(part, files['index.html']);
+		else {
+			mkdirSync(part, { recursive: true });
+			for (const [name, text] of Object.entries(files)) writeFileSync(join(part, name), text);
+			if (docs) cpSync(docs, join(part, 'docs'), { recursive: true });
+			rmSync(output, { recursive: true, force: true });
+		}
+		renameSync(part, output);
+	} catch (error) {
+		rmSync(part, { recursive: true, force: true });
+		throw new Failure(2, `${output}: cannot be written: ${error.code}`);
+	}
+}
+
+function packAo() {
+	const packed = spawnSync('sh', [join(source, 'npm/ao/pack.sh'), nook, join(folder, 'nook-ao')], { encoding: 'utf8' });
+	if (packed.status !== 0) {
+		const lines = packed.stderr.trim().split('\n');
+		throw new Failure(4, `npm/ao/pack.sh: ${(lines.find(line => /^nook: |Error: /.test(line)) ?? lines.pop()).replace(/^nook: /, '')}`);
+	}
+	return join(folder, 'nook-ao');
+}
+
+async function build(settings) {
 	nook = settings.nook.includes('/') ? resolve(settings.nook) : settings.nook;
 	if (!settings.level.startsWith('builtin:')) settings.level = resolve(settings.level);
 	const version = run('--version').split('\n')[0].replace(/^nook /, '');
-	const program = programOf(settings, version), catalogue = catalogueOf(settings); // what may be missing comes before long work
-	const { view, camera_option } = viewOf(settings);
+	checkOutput(settings); // what may be missing comes before long work
+	checkPackage(settings, version);
+	for (const name of ['vite', 'three']) needFile(settings.modules, join(name, 'package.json'), '--modules', 'the packages of site/package.json (scripts/site.sh installs them)');
+	const catalogue = catalogueOf(settings), { view, camera_option, chosen } = viewOf(settings);
 	const reading = JSON.parse(readFileSync(join(here, 'reading.json'), 'utf8'));
-	const page = pageOf({ command: commandOf(settings), version, domains: [...DOMAINS, 'slice'],
+	const data = { command: commandOf(settings), version, domains: [...DOMAINS, 'slice'],
 		methods: ['refine', 'electro', 'equal', 'random', 'poisson', 'halton', 'vogel', 'lloyd'], most: 4096, rays: Number(settings.rays),
-		load_options: wordsOf(settings.load), camera_option, catalogue, shading: shadingOf(view.radius_m), view, reading, program });
-	const part = `${settings.output}.${process.pid}.part`;
-	try {
-		writeFileSync(part, page);
-		renameSync(part, settings.output);
-	} catch (error) {
-		rmSync(part, { force: true });
-		throw new Failure(2, `${settings.output}: cannot be written: ${error.code}`);
-	}
+		load_options: wordsOf(settings.load), camera_option, catalogue, shading: shadingOf(view.radius_m), view, level: levelOf(settings, view, chosen), reading,
+		docs: settings.docs ? 'docs/index.html' : '' };
+	const files = await bundle({ root: here, source, modules: resolve(settings.modules), npm: resolve(settings.npm), ao: packAo(), data, whole: /\.html$/.test(settings.output) });
+	write(settings, files);
 }
 
 try {
 	folder = mkdtempSync(join(tmpdir(), 'nook_site.'));
-	build(settingsOf(process.argv.slice(2)));
+	await build(settingsOf(process.argv.slice(2)));
 } catch (error) {
 	if (!(error instanceof Failure)) throw error;
 	console.error(`site/build.mjs: ${error.message}`);

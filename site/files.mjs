@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files that nook writes, read: OpenEXR pictures, levels as binary glTF with masks as PNG. Other files are not expected here.
 import { readFileSync } from 'node:fs';
-import { inflateSync } from 'node:zlib';
+import { deflateSync, inflateSync } from 'node:zlib';
 
 const base64 = numbers => Buffer.from(numbers.buffer, numbers.byteOffset, numbers.byteLength).toString('base64');
 
@@ -70,6 +70,37 @@ function alphaOf(png) {
 		}
 	}
 	return { width, height, alpha: Uint8Array.from({ length: width * height }, (_, i) => pixels[(i + 1) * size - 1]) };
+}
+
+function crcOf(bytes) {
+	let crc = ~0;
+	for (const byte of bytes) {
+		crc ^= byte;
+		for (let bit = 0; bit < 8; ++bit) crc = (crc >>> 1) ^ (crc & 1 ? 0xedb88320 : 0);
+	}
+	return ~crc >>> 0;
+}
+
+// A PNG of three bytes per pixel; each row holds differences to the row above.
+export function writePng(width, height, pixels) {
+	const row = 3 * width, raw = Buffer.alloc((row + 1) * height);
+	for (let y = 0; y < height; ++y) {
+		raw[y * (row + 1)] = 2;
+		for (let x = 0; x < row; ++x) raw[y * (row + 1) + 1 + x] = pixels[y * row + x] - (y > 0 ? pixels[(y - 1) * row + x] : 0);
+	}
+	const chunk = (name, body) => {
+		const bytes = Buffer.alloc(12 + body.length);
+		bytes.writeUInt32BE(body.length, 0);
+		bytes.write(name, 4, 'latin1');
+		body.copy(bytes, 8);
+		bytes.writeUInt32BE(crcOf(bytes.subarray(4, 8 + body.length)), 8 + body.length);
+		return bytes;
+	};
+	const head = Buffer.alloc(13);
+	head.writeUInt32BE(width, 0);
+	head.writeUInt32BE(height, 4);
+	head.set([8, 2, 0, 0, 0], 8);
+	return Buffer.concat([Buffer.from('\x89PNG\r\n\x1a\n', 'latin1'), chunk('IHDR', head), chunk('IDAT', deflateSync(raw, { level: 9 })), chunk('IEND', Buffer.alloc(0))]);
 }
 
 const KINDS = { 5121: Uint8Array, 5123: Uint16Array, 5125: Uint32Array, 5126: Float32Array };

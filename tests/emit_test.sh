@@ -147,26 +147,33 @@ fails 3 'kept_disk.json: --counts: found 5 samples, expected 9 or more' emit --m
 fails 3 'kept_disk.json: recipe:.*progressive' emit --methods vo-line --patterns kept_disk.json --counts 3 --glsl 330 -o m.glsl
 fails 3 'kept_tile.json: --counts:' emit --methods vo-line --patterns kept_tile.json --counts 3 --glsl 330 -o m.glsl
 # Volumes: stages that compile on their own.
-for target in 330 430; do
+for target in "330 core" "430 core" "300 es" "450 vulkan"; do
+	version=$target
+	case $target in
+	300*) target=es300 ;;
+	450*) target=vulkan version=450 ;;
+	*) target=${target% core} ;;
+	esac
 	for method in "aov" "aov-mask" "aov-mask --directions 256" "aov --depth device"; do
+		[ "$target ${method%% *}" = "es300 aov-mask" ] && continue
 		works '"method": "aov' emit --methods $method --glsl $target -o m.glsl --json -
 		grep -q "^// Made by: nook emit --methods $method --glsl $target$" m.glsl || problem "no command in $(head -1 m.glsl)"
-		for stage in "VERTEX vert" "VERTEX_PRISMS vert" "VERTEX_CHOOSE_FACES vert" "FRAGMENT frag" "RESOLVE frag" "SPARSE frag"; do
+		for stage in "VERTEX vert" "VERTEX_PRISMS vert" "VERTEX_CHOOSE_FACES vert" "VERTEX_ANY_DEPTH vert" "FRAGMENT frag" "RESOLVE frag" "SPARSE frag"; do
 			set -- $stage
 			checks=$((checks + 1))
 			{
-				printf '#version %s core\n#define NOOK_%s\n' $target "${1%%_*}"
+				printf '#version %s\n#define NOOK_%s\n' "$version" "${1%%_*}"
 				[ "$1" = "${1%%_*}" ] || echo "#define NOOK_${1#*_}"
 				cat m.glsl
 			} >stage.$2
 			command -v glslangValidator >log || continue
-			glslangValidator stage.$2 >log 2>&1 || problem "$method $target $1: $(grep -m 1 ERROR log)"
+			glslangValidator $([ $target = vulkan ] && echo "-V -o stage.spv") stage.$2 >log 2>&1 || problem "$method $target $1: $(grep -m 1 ERROR log)"
 		done
-		rm -f stage.vert stage.frag log
+		rm -f stage.vert stage.frag stage.spv log
 	done
 done
 there m.glsl
-fails 1 '--glsl: found es300, expected 330 or 430' emit --methods aov --glsl es300 -o m.glsl
+fails 1 '--glsl: found es300, which has no logic operations on render targets' emit --methods aov-mask --glsl es300 -o m.glsl
 fails 1 '--glsl: found none' emit --methods aov -o m.glsl
 fails 1 '--patterns: found with --methods aov' emit --methods aov --patterns kept_disk.json --glsl 330 -o m.glsl
 fails 1 '--filter: found with --methods aov' emit --methods aov --filter window --glsl 330 -o m.glsl

@@ -23,6 +23,7 @@ checks=$((checks + 1))
 [ "$(wc -c <"$tarball")" -le 40000 ] || problem "the package: found $(wc -c <"$tarball") bytes, expected at most 40000"
 checks=$((checks + 1))
 mkdir public && "$nook" bake builtin:cornell --radius 1 --rays 16 -o public/baked.glb >"$folder/log" || problem "nook bake: failed"
+"$nook" volumes builtin:cornell --distance 0.4 -o public/volumes.glb >"$folder/log" || problem "nook volumes: failed"
 checks=$((checks + 1))
 "$tools/vite" build --outDir "$folder/vite" --logLevel error >"$folder/log" 2>&1 || problem "vite build: $(tail -n 5 "$folder/log")"
 page_said "the page" "$tools/vite" preview --outDir "$folder/vite" --port 0
@@ -35,11 +36,12 @@ node - said <<-'JS' >log 2>&1 || problem "the page: $(head -c 600 log)"
 	const { deepStrictEqual } = require('node:assert');
 	// The largest difference of each comparison, or its value.
 	const bounds = { infinite: 1e-3, logarithmicDepthBuffer: 2e-3, reversedDepthBuffer: 2e-3, reversedHalf: 0.03, orthographic: 4e-3, half: 0.03,
-		normals: 0.01, temporal: [1e-6, 0.2], multisampled: 0.06, intensity: 2e-3, tint: 0, product: 1e-3, view: 0, split: [0, 0], afterRender: 0,
+		normals: 0.01, smooth: 1, castingNormals: 0, card: 0.05, points: 0, temporal: [1e-6, 0.2], multisampled: 0.06, intensity: 2e-3, tint: 0, product: 1e-3, view: 0, split: [0, 0], afterRender: 0,
 		twice: 1e-3, postprocessing: 0, transparent: 0, over: 1e-3, layers: 0, casting: 0, bakedOnly: 1e-3, resized: 0, changed: 0, restoredContext: 0,
-		tinted: 0 };
-	const rest = { sky: 1, restored: [9, true, 0x8080ff], meshes: 1, level: true, nothing: null, memory: 0,
-		disposed: 'Error: NookPass: found render after dispose, expected a new pass' };
+		tinted: 0, lower: 2e-3, volumesReversed: 3e-3 };
+	const rest = { sky: 1, restored: [9, true, 0x8080ff], meshes: 1, level: true, kept: true, noVolumes: null, nothing: null, memory: 0,
+		disposed: 'Error: NookPass: found render after dispose, expected a new pass',
+		volumesDisposed: 'Error: NookVolumes: found render after dispose, expected a new one' };
 	const found = { ...differences }, wrong = [];
 	for (const [name, bound] of Object.entries(bounds)) {
 		if (![found[name]].flat().every((one, i) => one >= 0 && one <= [bound].flat()[i])) wrong.push(`${name}: found ${found[name]}, expected at most ${bound}`);
@@ -48,24 +50,60 @@ node - said <<-'JS' >log 2>&1 || problem "the page: $(head -c 600 log)"
 	if (!(found.included > 0.05)) wrong.push(`included: found ${found.included}, expected a transparent object to occlude`);
 	if (!(found.covered > 0.1)) wrong.push(`covered: found ${found.covered}, expected the transparent object on a tenth of the picture`);
 	if (!(found.baked < 0.2)) wrong.push(`baked: found ${found.baked}, expected the ball to be dark`);
-	for (const name of ['included', 'covered', 'baked']) delete found[name];
+	if (!(found.facets > 1.5)) wrong.push(`facets: found ${found.facets} degrees, expected normals from depth to be off the ball's by more`);
+	if (!(found.mapped > 0.03)) wrong.push(`mapped: found ${found.mapped}, expected the normal map on the card`);
+	if (!(found.volumesDarken[0] === 0 && found.volumesDarken[1] > 0.003)) wrong.push(`volumesDarken: found ${found.volumesDarken}, expected a darker picture`);
+	for (const name of ['volumesDarken', 'included', 'covered', 'baked', 'facets', 'mapped']) delete found[name];
 	if (wrong.length > 0) throw new Error(wrong.join('; '));
 	deepStrictEqual(found, rest);
 	deepStrictEqual(refused, [
+		'RangeError: volumes: found another length than the file says',
+		"RangeError: NookPass: volumes: found 'volumes.glb', expected a NookVolumes or null",
 		'RangeError: NookPass: radius: found -1, expected a number above 0',
 		"RangeError: NookPass: quality: found 'ultra', expected 'low', 'medium', 'high'",
 		'TypeError: NookPass: found the option radious, expected radius, quality, intensity, halfResolution, temporal, sky, view, tint, normals, baked, ' +
-			'renderScene, samples, excludeTransparent, excludeLayers',
+			'volumes, renderScene, samples, excludeTransparent, excludeLayers',
 		'RangeError: NookPass: excludeLayers: found 3, expected an array of layers, 0 to 31',
 		'RangeError: NookAO: found a size of NaN x 108, expected two numbers',
 		'RangeError: NookPass: intensity: found NaN, expected a number above 0',
 		'RangeError: NookAO: camera: projection: found infinity or NaN, expected 16 finite numbers',
-		'Error: NookAO: found a WebGPURenderer, expected a WebGLRenderer',
+		'Error: NookAO: found a WebGPURenderer, expected a WebGLRenderer; nook-ao/webgpu is for the other',
 	]);
 JS
 
+# WebGPU, with Chromium's SwiftShader. Half resolution takes other rows of the tile, because rows are counted from the top.
+cp said webgl_said
+(
+	cd "$folder/app" || exit 1
+	page_path=webgpu.html
+	page_options='--option --enable-unsafe-webgpu --option --use-webgpu-adapter=swiftshader'
+	page_said "the page of WebGPU" "$tools/vite" preview --outDir "$folder/vite" --port 0
+)
+checks=$((checks + 1))
+[ -s faults ] && problem "the page of WebGPU: $(head -n 5 faults)"
+checks=$((checks + 1))
+node - said <<-'JS' >log 2>&1 || problem "WebGPU: $(head -c 600 log)"
+	const { refused, webgpu, shadowed, ...differences } = JSON.parse(require('node:fs').readFileSync(process.argv[2], 'utf8'));
+	const { deepStrictEqual } = require('node:assert');
+	const most = 2 / 255, half = [0.03, 0.002], exact = [1e-3, 0];
+	const bounds = { low: [most, 0], medium: [most, 0], high: [most, 0], lowHalf: half, mediumHalf: half, highHalf: half, colours: [most, 0], tint: [most, 0],
+		radius: [0.02, 0.001], sky: [most, 0], orthographic: [0.05, 0.005], reversed: [0.1, 0.01], changed: exact, resized: exact, transparent: [0.01, 0.001], darkened: [1, 1] };
+	deepStrictEqual(Object.keys(differences).sort(), Object.keys(bounds).sort());
+	const wrong = Object.entries(bounds).filter(([name, bound]) => !differences[name].every((one, i) => one <= bound[i]));
+	if (wrong.length > 0) throw new Error(wrong.map(([name, bound]) => `${name}: found ${differences[name]}, expected at most ${bound}`).join('; '));
+	if (!(differences.darkened[0] > 0.05)) throw new Error(`darkened: found ${differences.darkened}, expected glass that is darkened`);
+	if (!webgpu || !(shadowed < 0.97)) throw new Error(`found WebGPU ${webgpu} and a mean visibility of ${shadowed}, expected a picture with shadows`);
+	deepStrictEqual(refused, [
+		'RangeError: nookPass: radius: found 0, expected a number above 0',
+		'TypeError: nookPass: found the option temporal, expected radius, quality, intensity, halfResolution, sky, tint, excludeTransparent',
+		'Error: nookPass: found a renderer without WebGPU, expected WebGPU; NookPass of nook-ao is for WebGL 2',
+		'Error: nookPass: found logarithmicDepthBuffer, expected a linear or reversed depth buffer',
+	]);
+JS
+mv webgl_said said
+
 # nook shade draws these depths.
-node "$here/live_page_files.cjs" read <said || problem "the page: $(head -c 300 said)"
+node "$here/live_site_files.cjs" read <said || problem "the page: $(head -c 300 said)"
 projection=$(node -e 'console.log(JSON.parse(require("fs").readFileSync("said", "utf8")).projection.join(" "))')
 oiiotool read/v0.tif --chnames Z -o depth.exr || problem "depth: not read"
 # pictured PICTURE SLICES STEPS PERCENT: at most PERCENT of the pixels differ by more than 1.5/255, since the page's normals have 8 bits.
@@ -78,6 +116,16 @@ pictured()
 	idiff -fail 0.0059 -failpercent "$4" "read/$1.tif" shade.exr >difference 2>&1
 	[ $? -lt 2 ] || problem "$1: $(grep -E 'Max|pixels' difference)"
 }
+# nook shade draws the same volumes, up to the page's normals of 8 bits and visibility of 8 bits.
+numbers=$(node -e 'console.log(JSON.parse(require("fs").readFileSync("said", "utf8")).room.map(matrix => matrix.join(" ")).join("\n"))')
+oiiotool read/v3.tif --chnames Z -o room.exr || problem "room: not read"
+checks=$((checks + 1))
+"$nook" shade room.exr --sky-depth 1e29 --projection "$(echo "$numbers" | head -n 1)" --world-to-camera "$(echo "$numbers" | tail -n 1)" --normals from-depth \
+	--method aov --volumes app/public/volumes.glb -o shade.exr >log 2>&1 || problem "nook shade: $(cat log)"
+idiff -fail 0.0079 -failpercent 0.5 read/v4.tif shade.exr >difference 2>&1
+[ $? -lt 2 ] || problem "volumes: $(grep -E 'Max|pixels' difference)"
+checks=$((checks + 1))
+[ "$(oiiotool --stats shade.exr | grep -c 'Stats Min: 0\.[0-7]')" = 1 ] || problem "volumes: found $(oiiotool --stats shade.exr | grep Min), expected dark pixels"
 pictured v1 1 4 0.5
 pictured v2 3 6 0.5
 before=$failures

@@ -49,7 +49,7 @@ application()
 }
 
 # page_said NAME COMMAND…: starts a server that prints its address, and opens its page. What the page leaves in globalThis.said goes
-# to $folder/said, its faults to $folder/faults.
+# to $folder/said, its faults to $folder/faults. $page_path and $page_options: another page, and options of page_driver.cjs.
 page_said()
 {
 	name=$1
@@ -61,7 +61,7 @@ page_said()
 		grep -q 'http://' "$folder/address" || sleep 0.5
 	done
 	address=$(sed 's/\x1b\[[0-9;]*m//g' "$folder/address" | grep -o -m 1 'http://[^ ]*')
-	node "$here/page_driver.cjs" "$browser" "$address" >"$folder/said" 2>"$folder/faults" <<-'JS'
+	node "$here/page_driver.cjs" "$browser" "$address${page_path-}" ${page_options-} >"$folder/said" 2>"$folder/faults" <<-'JS'
 		while (!globalThis.said) await new Promise(later => setTimeout(later, 50));
 		return said;
 	JS

@@ -298,7 +298,8 @@ TEST_CASE("volumes' frame: projections of another convention are refused by its 
 TEST_CASE("volumes' frame: the shader reads depth back from a depth buffer of any projection", "[volume_draw]")
 {
 	const GlContext context;
-	const std::string text = "#version 330 core\n#define NOOK_FRAGMENT\n#define main nookOfVolumes\n" + aovText({false, 0, true}) +
+	const std::string text = "#version 330 core\n#define NOOK_FRAGMENT\n#define main nookOfVolumes\n" +
+							 aovText({GlslTarget::gl330, 0, true}) +
 							 "#undef main\nvoid main()\n{\n\tnook_occlusion = nookDepth(ivec2(gl_FragCoord.xy));\n}\n";
 	Random rng(7);
 	for (const Setting& setting : settings())

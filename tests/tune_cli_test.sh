@@ -202,8 +202,7 @@ fails 1 "--budget: found '1'" tune builtin:cornell --budget 1
 fails 1 "--budget: found '-1ms'" tune builtin:cornell --budget=-1ms
 fails 1 "--budget: found 'nans'" tune builtin:cornell --budget nans
 fails 1 "--methods: found 'hbao'" tune builtin:cornell --budget 1ms --methods hbao
-fails 1 '--glsl: found es300 with volumes' tune builtin:cornell --budget 1ms --methods aov --glsl es300 -o kept_none
-fails 1 '--glsl: found vulkan with volumes' tune builtin:cornell --budget 1ms --methods vo-line,aov --glsl vulkan -o kept_none
+fails 1 '--glsl: found es300 with aov-mask, expected 330, 430 or vulkan' tune builtin:cornell --budget 1ms --methods aov-mask --glsl es300 -o kept_none
 fails 1 "--max-bytes: found '0'" tune builtin:cornell --budget 1ms --max-bytes 0
 fails 1 "--max-bytes: found '1MB'" tune builtin:cornell --budget 1ms --max-bytes 1MB
 fails 1 '--depth: found without -o' tune builtin:cornell --budget 1ms --depth device

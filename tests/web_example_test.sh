@@ -30,7 +30,7 @@ node "$here/page_driver.cjs" "$browser" "$(cat ../address)" --width 900 --height
 [ -z "${NOOK_KEEP:-}" ] || cp ../page.png "$NOOK_KEEP"
 
 cd "$folder"
-node "$here/live_page_files.cjs" read <said || problem "the page: $(head -c 300 said)"
+node "$here/live_site_files.cjs" read <said || problem "the page: $(head -c 300 said)"
 projection=$(node -e 'console.log(JSON.parse(require("fs").readFileSync("said", "utf8")).projection.join(" "))')
 oiiotool read/v0.tif read/v1.tif --chappend --chnames Z,depth_error -o depth.exr || problem "depth: not read"
 # pictured WHAT OPTIONS…

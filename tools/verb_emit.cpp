@@ -393,16 +393,20 @@ void emitVolumes(const EmitOptions& options, bool mask)
 	checkOutputs(options.outputs, kModuleFormats, {});
 	const GlslTarget target = options.settings.target;
 	const std::string target_name = targetName(target);
-	if (!options.given("--glsl") || !drawsVolumes(target))
+	if (!hasLanguage(options))
 	{
-		refuse("--glsl: found " + (options.given("--glsl") ? target_name : "none") + ", expected 330 or 430 for " +
-			   options.methods);
+		refuse("--glsl: found none, expected a language for " + options.methods);
+	}
+	if (!drawsVolumes(target, mask))
+	{
+		refuse("--glsl: found " + target_name +
+			   ", which has no logic operations on render targets, expected 330, 430 or vulkan for " + options.methods);
 	}
 	std::string command = "nook emit --methods " + options.methods;
 	command += options.settings.device_depth ? " --depth device" : "";
 	command += options.given("--directions") ? " --directions " + std::to_string(options.directions) : "";
 	command += " --glsl " + target_name;
-	const AovTextSettings text{target == GlslTarget::gl430, mask ? options.directions : 0, options.settings.device_depth};
+	const AovTextSettings text{target, mask ? options.directions : 0, options.settings.device_depth};
 	for (const std::string& path : options.outputs.files)
 	{
 		if (formatOf(path, kModuleFormats) == ".hlsl" || formatOf(path, kModuleFormats) == ".wgsl" || !isShader(path))

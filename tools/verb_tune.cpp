@@ -76,8 +76,7 @@ void declare(CLI::App& app, TuneOptions& options)
 				{"--repetitions", takesWhole(settings.repetitions, 1, 1000), "Drawings of what gets to the end (default 7)"},
 				glDeviceRow(settings.gl_device),
 				{"--glsl", takesChoice(glslTargets(), options.emit.target),
-				 "Language of the shader: OpenGL 3.3 (default), OpenGL 4.3, OpenGL ES 3.0, or Vulkan; volumes are in the first two",
-				 with_files},
+				 "Language of the shader: OpenGL 3.3 (default), OpenGL 4.3, OpenGL ES 3.0 (without masks), or Vulkan", with_files},
 				{"--depth", takesChoice(kModuleDepths, options.emit.device_depth),
 				 "What the shader reads: depth along the view direction (default), or what a depth buffer holds", with_files}});
 	addCache(app);
@@ -144,25 +143,28 @@ void checkPlaces(TuneOptions& options)
 std::vector<std::string> searchedMethods(const TuneOptions& options)
 {
 	std::vector<std::string> methods = partsOf(options.methods);
-	const bool draws_volumes = drawsVolumes(options.emit.target);
+	const auto draws = [&options](const MethodRow& row)
+	{
+		return row.kind != MethodKind::volumes || drawsVolumes(options.emit.target, row.masks);
+	};
 	for (const std::string& method : methods)
 	{
 		const MethodRow* const row = methodNamed(method);
-		if (row != nullptr && row->kind == MethodKind::volumes && !draws_volumes)
+		if (row != nullptr && !draws(*row))
 		{
-			refuse("--glsl: found " + std::string(glslTargets()[static_cast<std::size_t>(options.emit.target)]) +
-				   " with volumes, expected 330 or 430");
+			refuse("--glsl: found " + std::string(glslTargets()[static_cast<std::size_t>(options.emit.target)]) + " with " +
+				   method + ", expected 330, 430 or vulkan");
 		}
 		if (row != nullptr ? !row->emitted : assetNamed(method) == nullptr)
 		{
 			refuseValue("--methods", method, "some of " + searchedNames());
 		}
 	}
-	if (!options.methods.empty() || draws_volumes)
+	if (!options.methods.empty() || drawsVolumes(options.emit.target, true))
 	{
 		return methods;
 	}
-	return partsOf(methodNames([](const MethodRow& row) { return row.emitted && row.kind == MethodKind::screen; }, ",") +
+	return partsOf(methodNames([&draws](const MethodRow& row) { return row.emitted && draws(row); }, ",") +
 				   joinedText(kindsBesideMethods(), "", [](const AssetKind* kind) { return "," + std::string(kind->name); }));
 }
 

@@ -667,19 +667,19 @@ constexpr const char* kStages = R"(//
 //
 // Once: nook_volumes::Volumes::open. Upload corners() and polygons(): )";
 
-constexpr const char* kOnce330 = R"(buffer textures nook_corners (RGBA16UI) and
-// nook_polygons (RG32UI). With prisms, vertices() as well, as the attribute nook_point (location 1, four GL_UNSIGNED_SHORT, 8 bytes
-// apart), and indices() as elements (GL_UNSIGNED_SHORT).
-// Every frame: nook_volumes::Frame::set; its block is the uniform block NookVolumes; Frame::seen of every cluster makes the buffer
-// texture nook_clusters (RGBA32UI, four texels a cluster).
-)";
-
-constexpr const char* kOnce430 = R"(storage buffers nook_corners and
-// nook_polygons. With prisms, vertices() as well, as the attribute nook_point (location 1, four GL_UNSIGNED_SHORT, 8 bytes apart),
-// and indices() as elements (GL_UNSIGNED_SHORT).
-// Every frame: nook_volumes::Frame::set; its block is the uniform block NookVolumes; Frame::seen of every cluster makes the storage
-// buffer nook_clusters.
-)";
+std::string onceText(GlslTarget target)
+{
+	const bool textures = target == GlslTarget::gl330 || target == GlslTarget::es300;
+	const std::string buffer = target == GlslTarget::gl330 ? "buffer texture" : textures ? "texture" : "storage buffer";
+	return buffer + "s nook_corners" + (textures ? " (RGBA16UI)" : "") + " and\n// nook_polygons" + (textures ? " (RG32UI)" : "") +
+		   (target == GlslTarget::es300 ? ", two-dimensional, of any width, filled row by row" : "") +
+		   ". With prisms, vertices() as well, as the attribute nook_point (location 1, four\n"
+		   "// GL_UNSIGNED_SHORT, 8 bytes apart), and indices() as elements (GL_UNSIGNED_SHORT).\n"
+		   "// Every frame: nook_volumes::Frame::set; its block is the uniform block NookVolumes; Frame::seen of every cluster "
+		   "makes the\n"
+		   "// " +
+		   buffer + " nook_clusters" + (textures ? " (RGBA32UI, four texels a cluster)" : "") + ".\n";
+}
 
 constexpr const char* kDrawing = R"(//
 // Drawing, for each cluster i with Frame::inSight:
@@ -688,10 +688,14 @@ constexpr const char* kDrawing = R"(//
 //   glDrawElementsBaseVertex(GL_TRIANGLES, index_count, GL_UNSIGNED_SHORT, 2 * first_index, first_vertex);
 // or all in one call of glMultiDrawArraysIndirect (OpenGL 4.3), where nook_cluster (location 0) is an attribute with divisor 1 of the
 // numbers 0, 1, 2 ..., and i the base instance.
+// To pass the number of the cluster in another way, define NOOK_CLUSTER first: as a uniform of yours, gl_DrawID, or where the base
+// instance is i, gl_InstanceIndex (Vulkan).
 // States: depth test against the depth buffer of the frame, no depth writes; depth clamp; front faces counter-clockwise (clockwise where
 // Frame::mirrored). Clusters that do not contain the eye: cull back faces, depth test "less or equal". Clusters that do
 // (Frame::holdsEye): cull front faces, depth test "greater or equal"; reversed depth has the opposite tests. With EXT_depth_bounds_test
 // and one call per cluster, glDepthBoundsEXT with Frame::depthBounds skips fragments of volumes that float between the eye and a surface.
+// Without depth clamp (WebGL has it as EXT_depth_clamp): define NOOK_ANY_DEPTH for the vertex stage and draw without a depth test. The
+// picture is the same, but more fragments find that they have nothing to add.
 // Fewer fragments: define NOOK_CHOOSE_FACES for the vertex stage and draw all clusters in sight twice, first with the states of clusters
 // that do not contain the eye and nook_faces = 1, then with the other states and nook_faces = 2. Each volume is then drawn by the faces,
 // front or back, that seem to cover fewer pixels without any effect; to decide, the vertex stage reads two depths per corner of the
@@ -723,10 +727,10 @@ constexpr const char* kRest =
 
 std::string volumesGlsl(const AovTextSettings& settings, const EmitContext& context)
 {
-	const std::string version = settings.storage_buffers ? "430" : "330";
-	return commentBlock(notesOf(context, {}), "// ") + kStages + (settings.storage_buffers ? kOnce430 : kOnce330) + kDrawing +
-		   (settings.directions > 0 ? kBits : kSums) + kRest + "#if __VERSION__ < " + version +
-		   "\n#error nook: this module needs #version " + version + " or later\n#endif\n" + aovText(settings);
+	ModuleSettings module;
+	module.target = settings.target;
+	return commentBlock(notesOf(context, {}), "// ") + kStages + onceText(settings.target) + kDrawing +
+		   (settings.directions > 0 ? kBits : kSums) + kRest + headOf(module) + aovText(settings);
 }
 
 } // namespace nook

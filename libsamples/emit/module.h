@@ -21,15 +21,6 @@
 namespace nook
 {
 
-enum class GlslTarget
-{
-	gl330,  // OpenGL 3.3 and later
-	gl430,  // OpenGL 4.3 and later: explicit bindings
-	es300,  // OpenGL ES 3.0 and later
-	vulkan, // Vulkan: GLSL 4.50 with descriptor sets and bindings
-	hlsl60, // HLSL for shader model 6.0, Direct3D 12; it needs nothing that 5.0 lacks
-	wgsl,   // WebGPU: translated from the GLSL for Vulkan
-};
 std::span<const std::string_view> glslTargets(); // 330 430 es300 vulkan
 std::span<const std::string_view> hlslTargets(); // 60
 
@@ -131,10 +122,10 @@ std::string modulePython(const ModuleSettings& settings, const EmitContext& cont
 // "schema": "nook.module/1", one line: the members of the block with types and offsets, settings per method, and texels.
 std::string moduleJson(const ModuleSettings& settings, const EmitContext& context);
 
-// Volumes can be drawn with OpenGL 3.3 and 4.3 only.
-constexpr bool drawsVolumes(GlslTarget target)
+// Masks need logic operations on render targets, which WebGL and WebGPU lack.
+constexpr bool drawsVolumes(GlslTarget target, bool masks)
 {
-	return target == GlslTarget::gl330 || target == GlslTarget::gl430;
+	return !masks || (target != GlslTarget::es300 && target != GlslTarget::wgsl);
 }
 
 // The shader text that `nook shade --device gl` uses, with instructions for engines. Deterministic.

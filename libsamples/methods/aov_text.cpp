@@ -19,7 +19,7 @@ constexpr const char* kBlock = R"(#ifndef NOOK_SKY
 #endif
 
 // The uniform block, nook_volumes::Block of nook_volumes_draw.h, which Frame::set fills.
-layout(std140NOOK_AT_BLOCK) uniform NookVolumes
+NOOK_AT_BLOCKuniform NookVolumes
 {
 	vec2 size; // width, height in pixels
 	vec2 pixel_size;
@@ -68,27 +68,42 @@ uvec4 nookSeenCluster(int i, int texel)
 }
 )";
 
-constexpr const char* kBuffers430 = R"(
-#ifndef NOOK_CORNERS_BINDING
-#define NOOK_CORNERS_BINDING 0
-#endif
-#ifndef NOOK_POLYGONS_BINDING
-#define NOOK_POLYGONS_BINDING 1
-#endif
-#ifndef NOOK_CLUSTERS_BINDING
-#define NOOK_CLUSTERS_BINDING 2
-#endif
+constexpr const char* kBuffersEs300 = R"(
+// Textures of any width, filled row by row: corners (RGBA16UI) and polygons (RG32UI) of the file, and the clusters of this frame
+// (RGBA32UI).
+uniform highp usampler2D nook_corners;
+uniform highp usampler2D nook_polygons;
+uniform highp usampler2D nook_clusters;
 
+ivec2 nookTexel(int i, ivec2 size)
+{
+	return ivec2(i % size.x, i / size.x);
+}
+uvec4 nookPackedCorner(int i)
+{
+	return texelFetch(nook_corners, nookTexel(i, textureSize(nook_corners, 0)), 0);
+}
+uvec2 nookPackedPolygon(int i)
+{
+	return texelFetch(nook_polygons, nookTexel(i, textureSize(nook_polygons, 0)), 0).xy;
+}
+uvec4 nookSeenCluster(int i, int texel)
+{
+	return texelFetch(nook_clusters, nookTexel(4 * i + texel, textureSize(nook_clusters, 0)), 0);
+}
+)";
+
+constexpr const char* kStorage = R"(
 // Storage buffers: corners and polygons of the file, and the clusters of this frame.
-layout(std430, binding = NOOK_CORNERS_BINDING) readonly buffer NookCorners
+NOOK_AT_CORNERSreadonly buffer NookCorners
 {
 	uvec2 nook_corners[];
 };
-layout(std430, binding = NOOK_POLYGONS_BINDING) readonly buffer NookPolygons
+NOOK_AT_POLYGONSreadonly buffer NookPolygons
 {
 	uvec2 nook_polygons[];
 };
-layout(std430, binding = NOOK_CLUSTERS_BINDING) readonly buffer NookClusters
+NOOK_AT_CLUSTERSreadonly buffer NookClusters
 {
 	uvec4 nook_clusters[];
 };
@@ -110,10 +125,10 @@ uvec4 nookSeenCluster(int i, int texel)
 
 constexpr const char* kBetween = R"(
 // The polygon of a volume, from the vertex stage to the fragment stage.
-flat NOOK_WAY ivec4 nook_polygon; // first corner, number of corners, 1 where it occludes on both sides, extent (nookShare)
-flat NOOK_WAY vec4 nook_front;    // unit normal of its front, alpha
-flat NOOK_WAY vec3 nook_offset;   // a corner relative to the eye is nook_offset + nook_step * (stored integers)
-flat NOOK_WAY vec3 nook_step;
+NOOK_WAY0ivec4 nook_polygon; // first corner, number of corners, 1 where it occludes on both sides, extent (nookShare)
+NOOK_WAY1vec4 nook_front;    // unit normal of its front, alpha
+NOOK_WAY2vec3 nook_offset;   // a corner relative to the eye is nook_offset + nook_step * (stored integers)
+NOOK_WAY3vec3 nook_step;
 
 // Extent of the volume as shares of nook.radius: along the normal of its polygon (x) and beyond the edges (y).
 vec2 nookShare()
@@ -123,12 +138,41 @@ vec2 nookShare()
 }
 )";
 
-constexpr const char* kFaces = R"(
-NOOK_AT_FACESuniform int nook_faces; // 1: keeps volumes that are drawn by their front faces, 2: by their back faces, 0: keeps all
-)";
+std::string replaced(std::string text, std::string_view what, std::string_view by)
+{
+	for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+	{
+		text.replace(at, what.size(), by);
+	}
+	return text;
+}
+
+// way: in or out.
+std::string betweenText(GlslTarget target, const std::string& way)
+{
+	std::string text = kBetween;
+	for (int i = 0; i < 4; ++i)
+	{
+		const std::string number = std::to_string(i);
+		text = replaced(text, "NOOK_WAY" + number,
+						(target == GlslTarget::vulkan ? "layout(location = " + number + ") " : "") + "flat " + way + " ");
+	}
+	return text;
+}
+
+std::string facesText(GlslTarget target)
+{
+	const bool vulkan = target == GlslTarget::vulkan;
+	return std::string("\n// 1: keeps volumes that are drawn by their front faces, 2: by their back faces, 0: keeps all.\n") +
+		   (vulkan ? "layout(push_constant) uniform NookFaces\n{\n\tint nook_faces;\n};\n"
+				   : "NOOK_AT_FACESuniform int nook_faces;\n");
+}
 
 constexpr const char* kVertexMain = R"(
-layout(location = 0) in int nook_cluster; // number of the cluster, the same for all its vertices
+#ifndef NOOK_CLUSTER // number of the cluster, the same for all its vertices
+layout(location = 0) in int nook_cluster;
+#define NOOK_CLUSTER nook_cluster
+#endif
 #ifdef NOOK_PRISMS
 layout(location = 1) in uvec4 nook_point; // a vertex of the file
 #endif
@@ -136,9 +180,12 @@ layout(location = 1) in uvec4 nook_point; // a vertex of the file
 void main()
 {
 #ifdef NOOK_PRISMS
-	nookPrismVertex(nook_cluster, nook_point);
+	gl_Position = nookPrismVertex(NOOK_CLUSTER, nook_point);
 #else
-	nookPolygonVertex(nook_cluster, gl_VertexID);
+	gl_Position = nookPolygonVertex(NOOK_CLUSTER, gl_VertexID);
+#endif
+#ifdef NOOK_ANY_DEPTH
+	gl_Position.z = 0.0; // neither the near nor the far plane cuts it
 #endif
 }
 )";
@@ -247,20 +294,16 @@ std::string stageText(std::string_view text)
 	return "\n" + std::string(text.substr(text.find('\n') + 1));
 }
 
-std::string replaced(std::string text, std::string_view what, std::string_view by)
+bool hasFma(GlslTarget target)
 {
-	for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
-	{
-		text.replace(at, what.size(), by);
-	}
-	return text;
+	return target == GlslTarget::gl430 || target == GlslTarget::vulkan;
 }
 
 // One stage's functions, each once.
 class Functions
 {
 public:
-	// has_fma: is fma() part of the language?
+	// has_fma: is fma() part of the language, and does it round once?
 	explicit Functions(const KernelText& kernels, bool has_fma = false) : m_writer(kernels), m_has_fma(has_fma) {}
 
 	std::string of(const char* entry)
@@ -355,8 +398,8 @@ std::string maskResolveMain(int directions)
 
 std::string fragmentStage(const AovTextSettings& settings, const std::string& buffers)
 {
-	Functions functions(volumeKernels(), settings.storage_buffers);
-	std::string text = buffers + replaced(kBetween, "NOOK_WAY", "in") + inputs(settings) + kReceiver;
+	Functions functions(volumeKernels(), hasFma(settings.target));
+	std::string text = buffers + betweenText(settings.target, "in") + inputs(settings) + kReceiver;
 	text += functions.of("nookPosition") + functions.of("nookDepthError") + functions.of("nookHeight") + functions.of("nookLift");
 	if (settings.directions == 0)
 	{
@@ -389,56 +432,67 @@ std::string stage(const char* name, const std::string& text)
 	return std::string("\n#ifdef ") + name + "\n" + text + "#endif // " + name + "\n";
 }
 
-// Locations and bindings for OpenGL 4.3; those of samplers match the modules of screen-space methods.
+// Where resources are, on targets with explicit numbers; those of samplers match the modules of screen-space methods. OpenGL
+// counts each kind on its own, Vulkan all of them.
 struct Place
 {
 	const char* word; // before the declaration
 	const char* macro;
 	int number;
-	const char* kind;
+	const char* kind; // of OpenGL's
+	int vulkan;
+	const char* vulkan_kind;
 };
 constexpr std::array kPlaces{
-	Place{"NOOK_AT_FACES", "NOOK_FACES_LOCATION", 0, "location"},
-	Place{"NOOK_AT_DEPTHS", "NOOK_DEPTHS_BINDING", 1, "binding"},
-	Place{"NOOK_AT_NORMALS", "NOOK_NORMALS_BINDING", 2, "binding"},
-	Place{"NOOK_AT_HALF_SPACES", "NOOK_HALF_SPACES_BINDING", 10, "binding"},
-	Place{"NOOK_AT_CELLS", "NOOK_CELLS_BINDING", 6, "binding"},
-	Place{"NOOK_AT_SUMS", "NOOK_SUMS_BINDING", 13, "binding"},
-	Place{"NOOK_AT_MORE_SUMS", "NOOK_MORE_SUMS_BINDING", 14, "binding"},
+	Place{"NOOK_AT_BLOCK", "NOOK_BLOCK_BINDING", 0, "std140, binding", 0, "std140, binding"},
+	Place{"NOOK_AT_FACES", "NOOK_FACES_LOCATION", 0, "location", 16, "binding"},
+	Place{"NOOK_AT_DEPTHS", "NOOK_DEPTHS_BINDING", 1, "binding", 1, "binding"},
+	Place{"NOOK_AT_NORMALS", "NOOK_NORMALS_BINDING", 2, "binding", 2, "binding"},
+	Place{"NOOK_AT_CORNERS", "NOOK_CORNERS_BINDING", 0, "std430, binding", 3, "std430, binding"},
+	Place{"NOOK_AT_POLYGONS", "NOOK_POLYGONS_BINDING", 1, "std430, binding", 4, "std430, binding"},
+	Place{"NOOK_AT_CLUSTERS", "NOOK_CLUSTERS_BINDING", 2, "std430, binding", 5, "std430, binding"},
+	Place{"NOOK_AT_HALF_SPACES", "NOOK_HALF_SPACES_BINDING", 10, "binding", 10, "binding"},
+	Place{"NOOK_AT_CELLS", "NOOK_CELLS_BINDING", 6, "binding", 6, "binding"},
+	Place{"NOOK_AT_SUMS", "NOOK_SUMS_BINDING", 13, "binding", 13, "binding"},
+	Place{"NOOK_AT_MORE_SUMS", "NOOK_MORE_SUMS_BINDING", 14, "binding", 14, "binding"},
 };
 
-std::string withPlaces(std::string text, bool explicit_numbers)
+std::string withPlaces(std::string text, GlslTarget target)
 {
+	const bool vulkan = target == GlslTarget::vulkan;
 	for (const Place& place : kPlaces)
 	{
 		const std::string macro = place.macro;
-		text = replaced(text, place.word,
-						explicit_numbers ? "#ifndef " + macro + "\n#define " + macro + " " + std::to_string(place.number) +
-											   "\n#endif\nlayout(" + place.kind + " = " + macro + ") "
-										 : std::string());
+		const std::string number = std::to_string(vulkan ? place.vulkan : place.number);
+		const bool block = std::string_view("std140, binding") == place.kind;
+		text =
+			replaced(text, place.word,
+					 !vulkan && target != GlslTarget::gl430 ? (block ? "layout(std140) " : "")
+															: "#ifndef " + macro + "\n#define " + macro + " " + number +
+																  "\n#endif\nlayout(" + (vulkan ? "set = NOOK_SET, " : "") +
+																  (vulkan ? place.vulkan_kind : place.kind) + " = " + macro + ") ");
 	}
-	return text;
+	return vulkan ? replaced(text, "gl_VertexID", "gl_VertexIndex") : text;
 }
 
 } // namespace
 
 std::string aovText(const AovTextSettings& settings)
 {
-	const std::string buffers = settings.storage_buffers ? kBuffers430 : kBuffers330;
-	std::string text = settings.storage_buffers ? "#ifndef NOOK_BLOCK_BINDING\n#define NOOK_BLOCK_BINDING 0\n#endif\n" : "";
-	text += replaced(kBlock, "NOOK_AT_BLOCK", settings.storage_buffers ? ", binding = NOOK_BLOCK_BINDING" : "");
-	Functions of_vertex(volumeKernels(), settings.storage_buffers);
-	text +=
-		stage("NOOK_VERTEX", buffers + replaced(kBetween, "NOOK_WAY", "out") + of_vertex.of("nookCross") +
-								 "\n#ifdef NOOK_CHOOSE_FACES\n" + kFaces + inputs(settings) + stageText(assets::aov_faces_glsl) +
-								 "#endif // NOOK_CHOOSE_FACES\n" + stageText(assets::aov_vertex_glsl) + kVertexMain);
+	const GlslTarget target = settings.target;
+	const std::string buffers = target == GlslTarget::gl330 ? kBuffers330 : target == GlslTarget::es300 ? kBuffersEs300 : kStorage;
+	std::string text = kBlock;
+	Functions of_vertex(volumeKernels(), hasFma(target));
+	text += stage("NOOK_VERTEX", buffers + betweenText(target, "out") + of_vertex.of("nookCross") + "\n#ifdef NOOK_CHOOSE_FACES\n" +
+									 facesText(target) + inputs(settings) + stageText(assets::aov_faces_glsl) +
+									 "#endif // NOOK_CHOOSE_FACES\n" + stageText(assets::aov_vertex_glsl) + kVertexMain);
 	text += settings.directions > 0 ? masksText(settings.directions) : "";
 	text += stage("NOOK_FRAGMENT", fragmentStage(settings, buffers));
 	text += stage("NOOK_RESOLVE", settings.directions == 0
 									  ? stageText(assets::aov_resolve_glsl) + kResolveMain
 									  : stageText(assets::aov_mask_resolve_glsl) + maskResolveMain(settings.directions));
 	text += settings.directions > 0 ? stage("NOOK_HALF_SPACES", kHalfSpacesMain) : "";
-	return withPlaces(text + stage("NOOK_SPARSE", sparseStage(settings)), settings.storage_buffers);
+	return withPlaces(text + stage("NOOK_SPARSE", sparseStage(settings)), target);
 }
 
 } // namespace nook

@@ -12,9 +12,19 @@
 namespace nook
 {
 
+enum class GlslTarget
+{
+	gl330,  // OpenGL 3.3 and later
+	gl430,  // OpenGL 4.3 and later: explicit bindings
+	es300,  // OpenGL ES 3.0 and later, WebGL 2
+	vulkan, // Vulkan: GLSL 4.50 with descriptor sets and bindings
+	hlsl60, // HLSL for shader model 6.0, Direct3D 12; it needs nothing that 5.0 lacks
+	wgsl,   // WebGPU: translated from the GLSL for Vulkan
+};
+
 struct AovTextSettings
 {
-	bool storage_buffers = false; // for OpenGL 4.3; else buffer textures for 3.3
+	GlslTarget target = GlslTarget::gl330;
 	int directions = 0;           // aov-mask: 32 to 256, a multiple of 32; 0: sums of occlusion
 	bool device_depth = false;    // depth as stored in a depth buffer; else along the view direction, metres
 };

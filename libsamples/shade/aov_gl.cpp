@@ -553,7 +553,8 @@ public:
 	Drawer(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSettings& settings, const AovGlOptions& options)
 		: m_gbuffer(gbuffer), m_settings(settings), m_options(options), m_packed(packVolumes(volumes, {options.prisms}, {})),
 		  m_header(headerOf(volumes, settings.compensate)),
-		  m_text(aovText({options.storage_buffers, settings.mask ? settings.directions : 0, false}))
+		  m_text(aovText(
+			  {options.storage_buffers ? GlslTarget::gl430 : GlslTarget::gl330, settings.mask ? settings.directions : 0, false}))
 	{
 		// Clamped bounds cut volumes where they still occlude, and front and back faces would lose different parts.
 		m_options.choose_faces = options.choose_faces && volumes.exact_bounds;

@@ -172,16 +172,16 @@ void emitVolumes(AssetEmission& made)
 	const AovSettings& aov = made.settings.aov;
 	const std::string method(volumeRow(aov.mask).name);
 	const std::string target(glslTargets()[static_cast<std::size_t>(made.target)]);
-	if (!drawsVolumes(made.target))
+	if (!drawsVolumes(made.target, aov.mask))
 	{
-		throw Error(ExitCode::unsupported,
-					"glsl: found " + target + " with " + method + " as the pick, expected 330 or 430, or methods without it");
+		throw Error(ExitCode::unsupported, "glsl: found " + target + " with " + method +
+											   " as the pick, expected 330, 430 or vulkan, or methods without it");
 	}
 	constexpr const char* kModule = "nook_aov.glsl";
 	std::string command = "nook emit --methods " + method + (made.device_depth ? " --depth device" : "");
 	command += aov.mask ? " --directions " + std::to_string(aov.directions) : "";
 	command += " --glsl " + target;
-	const AovTextSettings text{made.target == GlslTarget::gl430, aov.mask ? aov.directions : 0, made.device_depth};
+	const AovTextSettings text{made.target, aov.mask ? aov.directions : 0, made.device_depth};
 	made.files.push_back(
 		{kModule, volumesGlsl(text, {command, made.version, {}, {}}), "the stages that draw volumes; its head says how"});
 	made.commands.push_back(command + " -o " + kModule);

@@ -291,9 +291,9 @@ std::vector<LeftOut> leftOut(const TuneReport& report, const TuneEmitSettings& s
 			 "paired lines, samples without normals",
 			 "not searched: `nook emit` has them"});
 	}
-	if (!drawsVolumes(settings.target))
+	if (!drawsVolumes(settings.target, true))
 	{
-		left.push_back({"occlusion volumes, masks of directions", "not searched: they are drawn by `--glsl 330` or `430`"});
+		left.push_back({"masks of directions", "not searched: they are drawn by `--glsl 330`, `430` or `vulkan`"});
 	}
 	return left;
 }

@@ -6,6 +6,7 @@ import {
 } from 'three';
 import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
 import { blockBytes, fill, glslOf, recipe, tiles } from './nook_slices.js';
+import { defineOptions, rows } from './options.js';
 
 const vertexShader = 'in vec3 position;\nvoid main() { gl_Position = vec4(position.xy, 0.5, 1.0); }'; // z is in front of a cleared buffer, reversed or not
 
@@ -20,46 +21,11 @@ export function screenMaterial(fragmentShader, uniforms, state = {}) {
 export const targetOf = (type, format = RGBAFormat, options = {}) =>
 	new WebGLRenderTarget(1, 1, { type, format, depthBuffer: false, minFilter: NearestFilter, magFilter: NearestFilter, ...options });
 
-const shown = value => typeof value === 'string' ? `'${value}'` : Array.isArray(value) ? JSON.stringify(value) : String(value);
-const isPositive = value => Number.isFinite(value) && value > 0;
-const isTruth = value => typeof value === 'boolean';
-export const positive = fallback => ({ fallback, valid: isPositive, expected: 'a number above 0' });
-export const truth = fallback => ({ fallback, valid: isTruth, expected: 'true or false' });
-export const oneOf = (...values) => ({ fallback: values[0], valid: value => values.includes(value), expected: values.map(shown).join(', ') });
-
 const bitsOf = { [FloatType]: 32, [UnsignedShortType]: 16 }; // of a depth texture's type; others have 24
-
-/** Defines an object's options as properties that check what is set, and sets them. rows: name to { fallback, valid, expected }. */
-export function defineOptions(object, owner, rows, given) {
-	const unknown = Object.keys(given).find(name => !Object.hasOwn(rows, name));
-	if (unknown !== undefined) throw new TypeError(`${owner}: found the option ${unknown}, expected ${Object.keys(rows).join(', ')}`);
-	for (const [name, { fallback, valid, expected, stored = value => value }] of Object.entries(rows)) {
-		let held;
-		Object.defineProperty(object, name, {
-			enumerable: true,
-			get: () => held,
-			set: value => {
-				if (!valid(value)) throw new RangeError(`${owner}: ${name}: found ${shown(value)}, expected ${expected}`);
-				held = stored(value);
-			},
-		});
-		object[name] = given[name] === undefined ? fallback : given[name];
-	}
-}
-
-/** The options of the obscurance itself. */
-export const rows = {
-	radius: positive(1.5),
-	quality: { ...oneOf('low', 'medium', 'high'), fallback: 'medium' },
-	intensity: positive(1),
-	halfResolution: truth(false),
-	temporal: truth(false),
-	sky: { fallback: Infinity, valid: value => value > 0, expected: 'a number above 0 or Infinity' },
-};
 
 /** Returns whether a renderer can draw now, which it cannot while its context is lost. Throws where it never can. */
 export function isReady(renderer, owner) {
-	if (renderer.isWebGPURenderer) throw new Error(`${owner}: found a WebGPURenderer, expected a WebGLRenderer`);
+	if (renderer.isWebGPURenderer) throw new Error(`${owner}: found a WebGPURenderer, expected a WebGLRenderer; nook-ao/webgpu is for the other`);
 	const gl = renderer.getContext();
 	if (gl.isContextLost()) return false;
 	if (!(gl instanceof WebGL2RenderingContext)) throw new Error(`${owner}: found no WebGL 2, expected it`);

@@ -7,7 +7,7 @@ export type View = 'combined' | 'off' | 'split' | 'visibility' | 'normals' | 'de
 
 /** All options are properties as well and can be set at any time. A value out of range throws a RangeError. */
 export interface NookAOOptions {
-	/** How far surfaces occlude each other, in units of the scene: the length of the rays that the picture stands for. Default 1.5. */
+	/** How far surfaces occlude each other, in units of the scene. Default 1.5. */
 	radius?: number;
 	/** Depths per pixel: 6, 8 or 36. Default 'medium'. */
 	quality?: Quality;
@@ -26,14 +26,16 @@ export interface CompositeOptions extends NookAOOptions {
 	view?: View;
 	/** Colour of full obscurance. Default black. */
 	tint?: ColorRepresentation;
-	/** 'pass' draws the scene's smooth normals in a pass of their own; 'depth' computes normals from depth. Default 'depth'. */
+	/** 'pass' draws the scene's own normals; 'depth' computes them from depth. Default 'depth'. */
 	normals?: 'depth' | 'pass';
-	/** The scene's materials come from useBakedVisibility: the lower visibility of bake and screen decides. Default false. */
+	/** With useBakedVisibility: the lower visibility of bake and screen decides. Default false. */
 	baked?: boolean;
+	/** Static occlusion of the level, drawn with every frame; the lower visibility decides. Default null. */
+	volumes?: NookVolumes | null;
 }
 
 export interface NookPassOptions extends CompositeOptions {
-	/** false: colours come from the pass before, and depth from its target's depth texture or a separate pass. Default true. */
+	/** false: colours come from the pass before, depth from its depth texture or a separate pass. Default true. */
 	renderScene?: boolean;
 	/** Samples per pixel of the frame, 0 to 16. Default 0. */
 	samples?: number;
@@ -59,6 +61,7 @@ export class NookPass extends Pass implements Required<Omit<NookPassOptions, 'ti
 	set tint(colour: ColorRepresentation);
 	normals: 'depth' | 'pass';
 	baked: boolean;
+	volumes: NookVolumes | null;
 	renderScene: boolean;
 	samples: number;
 	excludeTransparent: boolean;
@@ -98,3 +101,14 @@ export class NookAO implements Required<NookAOOptions> {
 
 /** Multiplies ambient light by the visibility that `nook bake` stored at vertices. Returns the number of meshes that have it. */
 export function useBakedVisibility(root: Object3D): number;
+
+/** Static occlusion from a file of `nook volumes`, which was not made with --compress. Throws a RangeError for another file. */
+export class NookVolumes {
+	constructor(buffer: ArrayBuffer | Uint8Array);
+	/** Visibility of the last frame, 1 where open, in the first channel; null before the first. */
+	get texture(): Texture | null;
+	/** Draws over depths and normals of a NookAO. Returns false, and draws nothing, where the context is lost. */
+	render(renderer: WebGLRenderer, camera: Camera, depths: Texture, normals: Texture): boolean;
+	/** Frees everything. Further calls do nothing. */
+	dispose(): void;
+}

@@ -2,3 +2,4 @@
 export { NookAO } from './ao.js';
 export { NookPass } from './pass.js';
 export { useBakedVisibility } from './baked.js';
+export { NookVolumes } from './volumes.js';

@@ -5,9 +5,17 @@ import {
 	UnsignedByteType, WebGLRenderTarget, ZeroFactor,
 } from 'three';
 import { FullScreenQuad, Pass } from 'three/addons/postprocessing/Pass.js';
-import { defineOptions, isReady, NookAO, oneOf, rows, screenMaterial, targetOf, truth } from './ao.js';
+import { isReady, NookAO, screenMaterial, targetOf } from './ao.js';
+import { defineOptions, oneOf, rows, truth } from './options.js';
 
 const isLayers = value => Array.isArray(value) && value.every(layer => Number.isInteger(layer) && layer >= 0 && layer < 32);
+
+/** Draws the visibility of a pass, and its volumes. */
+export function obscure(pass, ao, renderer, depths, normals) {
+	for (const name of Object.keys(rows)) ao[name] = pass[name];
+	ao.camera = pass.camera;
+	return ao.render(renderer, depths, normals) && (pass.volumes === null || pass.volumes.render(renderer, pass.camera, ao.depths, normals ?? ao.normals));
+}
 
 /** Options beside those of NookAO. */
 export const passRows = {
@@ -16,6 +24,7 @@ export const passRows = {
 	tint: { fallback: 0x000000, valid: value => value !== undefined && value !== null, expected: 'a colour', stored: value => new Color(value) },
 	normals: oneOf('depth', 'pass'),
 	baked: truth(false),
+	volumes: { fallback: null, valid: value => value === null || typeof value?.render === 'function', expected: 'a NookVolumes or null' },
 };
 const sceneRows = {
 	...passRows,
@@ -33,19 +42,26 @@ const views = ['combined', 'off', 'split', 'visibility', 'normals', 'depth'];
 /** Draws colours × visibility, or one of the views. Shared by the passes of all composers. */
 export class Composite {
 	constructor() {
-		const body = `uniform sampler2D colours, visibilities, depths, normals;
+		const body = `uniform sampler2D colours, visibilities, depths, normals, statics;
 uniform vec3 tint;
 uniform int view;
-uniform bool baked;
+uniform bool baked, has_statics;
 uniform float width, range;
 out vec4 result;
-// With baked visibility in the colours' alpha, the lower visibility of both decides.
-vec3 factorOf(ivec2 pixel, float alpha) {
+float openOf(ivec2 pixel) {
 	float open = texelFetch(visibilities, pixel, 0).r;
+	return has_statics ? min(open, texelFetch(statics, pixel, 0).r) : open;
+}
+// With volumes, or baked visibility in the colours' alpha, the lowest visibility decides.
+vec3 factorOf(ivec2 pixel, float alpha) {
+	float open = openOf(pixel);
 	if (baked) open = min(1.0, open / max(alpha, 1e-3));
 	return mix(tint, vec3(1.0), open);
 }`;
-		const uniforms = { colours: null, visibilities: null, depths: null, normals: null, tint: new Color(), view: 0, baked: false, width: 1, range: 1 };
+		const uniforms = {
+			colours: null, visibilities: null, depths: null, normals: null, statics: null, has_statics: false, tint: new Color(), view: 0, baked: false, width: 1,
+			range: 1,
+		};
 		this.whole = screenMaterial(`${body}
 void main() {
 	ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -53,7 +69,7 @@ void main() {
 	vec3 factor = factorOf(pixel, colour.a);
 	if (view == 1 || (view == 2 && gl_FragCoord.x < 0.5 * width)) factor = vec3(1.0);
 	result = vec4(colour.rgb * factor, baked ? 1.0 : colour.a);
-	if (view == 3) result = vec4(vec3(texelFetch(visibilities, pixel, 0).r), 1.0);
+	if (view == 3) result = vec4(vec3(openOf(pixel)), 1.0);
 	if (view == 4) result = vec4(texelFetch(normals, pixel, 0).rgb, 1.0);
 	if (view == 5) result = vec4(vec3(min(texelFetch(depths, pixel, 0).r / range, 1.0)), 1.0);
 }`, uniforms);
@@ -80,9 +96,10 @@ void main() {
 
 	/** Values for draw() from the options of a pass. */
 	static valuesOf(pass, ao, colours, normals) {
+		const statics = pass.volumes?.texture ?? null;
 		return {
 			colours, visibilities: ao.texture, depths: ao.depths, normals: normals ?? ao.normals, tint: pass.tint, view: views.indexOf(pass.view), baked: pass.baked,
-			width: ao._size.x, range: 20 * pass.radius,
+			width: ao._size.x, range: 20 * pass.radius, statics, has_statics: statics !== null,
 		};
 	}
 
@@ -91,31 +108,75 @@ void main() {
 	}
 }
 
-/** Draws the scene's depth, and its normals with MeshNormalMaterial, where no texture has them. */
+// Properties of a material that change the normals or the outline of its surface. Colours matter only where alpha cuts holes.
+const surfaceKeys = ['side', 'depthTest', 'opacity', 'alphaTest', 'alphaMap', 'bumpMap', 'bumpScale', 'normalMap', 'normalMapType', 'normalScale', 'displacementMap',
+	'displacementScale', 'displacementBias', 'flatShading'];
+
+// MeshNormalMaterial ignores alpha: adds the chunks that cut holes after two that it has.
+function cutHoles(shader) {
+	for (const [after, added] of [['uv_pars', ['map_pars', 'alphamap_pars', 'alphatest_pars']], ['logdepthbuf', ['map', 'alphamap', 'alphatest']]]) {
+		const chunks = [after, ...added].map(name => `#include <${name}_fragment>`);
+		shader.fragmentShader = shader.fragmentShader.replace(chunks[0], chunks.join('\n'));
+	}
+}
+
+/** Draws the scene's depth, where no texture has it, and the normals of its materials: smooth, mapped, of both sides, with holes. */
 export class Prepass {
 	constructor() {
-		this.material = new MeshNormalMaterial();
+		this.materials = new Map(); // a material's normals by the material
 		this.target = targetOf(UnsignedByteType);
 		this.target.depthBuffer = true;
 		this.target.depthTexture = new DepthTexture(1, 1, FloatType);
+		this.drop = ({ target }) => {
+			target.removeEventListener('dispose', this.drop);
+			this.materials.get(target)?.dispose();
+			this.materials.delete(target);
+		};
 	}
 
 	render(renderer, scene, camera, width, height) {
 		const kept = [scene.overrideMaterial, scene.background, renderer.autoClear, renderer.shadowMap.autoUpdate];
+		const changed = [];
+		scene.traverseVisible(object => {
+			if (!object.material || invisible.includes(object.material)) return;
+			changed.push([object, object.layers.mask, object.material]);
+			if (!object.isMesh) object.layers.mask = 0; // lines, points and sprites have no normals
+			else object.material = Array.isArray(object.material) ? object.material.map(one => this._normalsOf(one)) : this._normalsOf(object.material);
+		});
 		this.target.setSize(width, height);
-		scene.overrideMaterial = this.material;
+		const clear = renderer.getClearColor(new Color()), alpha = renderer.getClearAlpha();
+		renderer.setClearColor(new Color(0.5, 0.5, 0.5), 1); // no direction, as normals from depth have for sky
+		scene.overrideMaterial = null;
 		scene.background = null;
 		renderer.autoClear = true;
 		renderer.shadowMap.autoUpdate = false;
 		renderer.setRenderTarget(this.target);
 		renderer.render(scene, camera);
+		renderer.setClearColor(clear, alpha);
+		show(changed);
 		[scene.overrideMaterial, scene.background, renderer.autoClear, renderer.shadowMap.autoUpdate] = kept;
 	}
 
 	dispose() {
+		for (const material of [...this.materials.keys()]) this.drop({ target: material });
 		this.target.depthTexture.dispose();
 		this.target.dispose();
-		this.material.dispose();
+	}
+
+	_normalsOf(material) {
+		let made = this.materials.get(material);
+		if (!made) {
+			made = new MeshNormalMaterial();
+			made.onBeforeCompile = cutHoles;
+			this.materials.set(material, made);
+			material.addEventListener('dispose', this.drop);
+		}
+		for (const key of surfaceKeys) if (material[key] !== undefined) made[key] = material[key];
+		made.visible = material.visible && material.depthWrite;
+		made.map = material.alphaTest > 0 ? material.map ?? null : null;
+		if (made.userData.version !== material.version) made.needsUpdate = true;
+		made.userData.version = material.version;
+		return made;
 	}
 }
 
@@ -194,10 +255,7 @@ export class NookPass extends Pass {
 	}
 
 	_obscure(renderer, depths) {
-		const ao = this._ao;
-		for (const name of Object.keys(rows)) ao[name] = this[name];
-		ao.camera = this.camera;
-		return ao.render(renderer, depths, this.normals === 'pass' ? this._prepass.target.texture : null);
+		return obscure(this, this._ao, renderer, depths, this.normals === 'pass' ? this._prepass.target.texture : null);
 	}
 
 	_show(renderer, colours, target) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The pass for the composer of the package `postprocessing`, without depending on it.
-import { defineOptions, isReady, NookAO, rows } from './ao.js';
-import { Composite, passRows, Prepass } from './pass.js';
+import { isReady, NookAO } from './ao.js';
+import { defineOptions } from './options.js';
+import { Composite, obscure, passRows, Prepass } from './pass.js';
 
 /** Returns the class of a pass to add after a RenderPass. Pass: the class that `postprocessing` exports. */
 export function nookPassFor(Pass) {
@@ -42,15 +43,13 @@ export function nookPassFor(Pass) {
 			const ao = this._ao, composite = this._composite;
 			const { x: width, y: height } = ao._size;
 			if (width === 0 || height === 0 || !isReady(renderer, 'NookPass')) return;
-			for (const name of Object.keys(rows)) ao[name] = this[name];
 			let normals = null;
 			if (this.normals === 'pass') {
 				this._prepass ??= new Prepass();
 				this._prepass.render(renderer, this.scene, this.camera, width, height);
 				normals = this._prepass.target.texture;
 			}
-			ao.camera = this.camera;
-			if (ao.render(renderer, this._depths, normals)) {
+			if (obscure(this, ao, renderer, this._depths, normals)) {
 				composite.draw(renderer, composite.whole, this.renderToScreen ? null : outputBuffer, Composite.valuesOf(this, ao, inputBuffer.texture, normals));
 			}
 		}

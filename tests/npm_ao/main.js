@@ -8,8 +8,9 @@ import { OutputPass } from 'three/addons/postprocessing/OutputPass.js';
 import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
 import { RenderPass } from 'three/addons/postprocessing/RenderPass.js';
 import * as POST from 'postprocessing';
-import { NookAO, NookPass, useBakedVisibility } from 'nook-ao';
+import { NookAO, NookPass, NookVolumes, useBakedVisibility } from 'nook-ao';
 import { nookPassFor } from 'nook-ao/postprocessing';
+import { cameraOf, sceneOf } from './scene.js';
 
 const width = 192, height = 108;
 const rendererOf = options => {
@@ -20,30 +21,7 @@ const rendererOf = options => {
 const renderer = rendererOf();
 document.body.append(renderer.domElement);
 
-// A floor, a wall and things on it, below sky.
-const scene = new THREE.Scene().add(new THREE.HemisphereLight(0xffffff, 0xffffff, Math.PI));
-scene.background = new THREE.Color(0x8080ff);
-const grey = new THREE.MeshLambertMaterial({ color: 0xffffff });
-const box = (x, y, z, dx, dy, dz, material = grey) => {
-	const mesh = new THREE.Mesh(new THREE.BoxGeometry(dx, dy, dz), material);
-	mesh.position.set(x, y, z);
-	scene.add(mesh);
-	return mesh;
-};
-box(0, -0.5, 0, 12, 1, 12);
-box(0, 1, -3, 8, 2, 0.5);
-box(-1.5, 0.4, -1, 0.8, 0.8, 0.8).rotation.y = 0.5;
-box(1.2, 0.25, 0, 1.5, 0.5, 0.5).rotation.y = -0.3;
-box(1.2, 0.9, -1.8, 0.3, 1.8, 0.3);
-const ball = new THREE.Mesh(new THREE.SphereGeometry(0.5, 32, 16), grey);
-ball.position.set(0, 0.5, -0.8);
-scene.add(ball);
-const cameraOf = camera => {
-	camera.position.set(0.6, 2, 4);
-	camera.lookAt(0, 0.5, -1);
-	camera.updateMatrixWorld();
-	return camera;
-};
+const { scene, grey, box, ball } = sceneOf();
 const camera = cameraOf(new THREE.PerspectiveCamera(50, width / height, 0.1, 100));
 
 // The first channel of a texture, rows from the top.
@@ -66,8 +44,8 @@ function read(texture, renderer, channel = 0) {
 }
 
 // Pictures of a three.js composer: the pass's own and, in `colours`, the composer's.
-function drawn(options = {}, { on = renderer, from = camera, frames = 1, before = [], after = [], channel = 0 } = {}) {
-	const pass = new NookPass(scene, from, width, height, options);
+function drawn(options = {}, { on = renderer, from = camera, frames = 1, before = [], after = [], channel = 0, of = scene } = {}) {
+	const pass = new NookPass(of, from, width, height, options);
 	const composer = new EffectComposer(on, new THREE.WebGLRenderTarget(width, height, { type: THREE.HalfFloatType }));
 	composer.renderToScreen = false;
 	for (const one of [...before, pass, ...after]) composer.addPass(one);
@@ -131,6 +109,18 @@ differences.orthographic = rmse(ortho.open, drawn({}, { from: deep }).open);
 const half = drawn({ halfResolution: true });
 differences.half = rmse(half.open, base.open);
 differences.normals = rmse(drawn({ normals: 'pass' }).open, base.open);
+// The picture of normals: angles in degrees to those of the ball, where it is seen.
+const normalsOf = options => [0, 1, 2].map(channel => drawn({ view: 'normals', ...options }, { channel }).colours.map(one => 2 * one - 1));
+{
+	const centre = ball.position.clone().applyMatrix4(camera.matrixWorldInverse), inverse = camera.projectionMatrixInverse;
+	const anglesOf = normals => Array.from(base.depths, (depth, i) => {
+		const at = new THREE.Vector3((i % width + 0.5) / width * 2 - 1, 1 - (Math.floor(i / width) + 0.5) / height * 2, 0.5).applyMatrix4(inverse);
+		const seen = at.multiplyScalar(depth / -at.z).sub(centre);
+		if (Math.abs(seen.length() - 0.5) > 0.005) return -1;
+		return seen.angleTo(new THREE.Vector3(...normals.map(axis => axis[i]))) * 180 / Math.PI;
+	}).filter(angle => angle >= 0);
+	[differences.smooth, differences.facets] = ['pass', 'depth'].map(normals => mean(anglesOf(normalsOf({ normals }))));
+}
 // The next frame changes the mean of many by less than the first two frames differ.
 const [once, next, many, more] = [1, 2, 32, 33].map(frames => drawn({ temporal: true }, { frames }).open);
 differences.temporal = [rmse(once, base.open), rmse(many, more) / rmse(once, next)];
@@ -178,8 +168,37 @@ glass.layers.enable(3);
 differences.layers = rmse(drawn({ excludeLayers: [3] }).open, base.open);
 glass.castShadow = true;
 differences.casting = rmse(drawn({ excludeLayers: [3] }).open, base.open);
+const [smooth, clear] = [[], [3]].map(excludeLayers => {
+	scene[excludeLayers.length ? 'add' : 'remove'](glass);
+	return drawn({ normals: 'pass', excludeLayers }).open;
+});
+differences.castingNormals = rmse(smooth, clear);
 differences.restored = [glass.layers.mask, glass.material === grey, scene.background.getHex()];
 scene.remove(glass);
+
+// ---- Normals of a card that is seen from its back, has holes and a normal map: those of a flat one, and of the surface behind it.
+{
+	const texels = (...values) => Object.assign(new THREE.DataTexture(Uint8Array.from(values), 2, 1), { needsUpdate: true });
+	const leaf = new THREE.MeshLambertMaterial({ side: THREE.DoubleSide, alphaTest: 0.5, map: texels(255, 255, 255, 255, 255, 255, 255, 0) });
+	const card = new THREE.Mesh(new THREE.PlaneGeometry(2, 1.2), leaf);
+	card.position.set(0, 1, 0.5);
+	card.rotation.y = Math.PI + 0.3;
+	scene.add(card);
+	const points = new THREE.Points(new THREE.PlaneGeometry(1, 1), new THREE.PointsMaterial({ size: 2, depthWrite: false }));
+	points.position.set(0, 1, 2);
+	scene.add(points);
+	// Away from edges, where depth has normals of neighbours: in most pixels.
+	const apart = normals => [0, 1, 2].map(axis => normals[0][axis].map((one, i) => Math.abs(one - normals[1][axis][i]))).reduce((most, axis) => most.map((one, i) => Math.max(one, axis[i])));
+	const both = normalsOf({ normals: 'pass' });
+	differences.card = mean(apart([both, normalsOf()]).map(one => one > 0.02 ? 1 : 0));
+	differences.points = rmse(both[0], (scene.remove(points), normalsOf({ normals: 'pass' }))[0]);
+	leaf.normalMap = texels(128, 255, 128, 255, 128, 255, 128, 255);
+	leaf.needsUpdate = true;
+	differences.mapped = mean(apart([both, normalsOf({ normals: 'pass' })]).map(one => one > 0.1 ? 1 : 0));
+	differences.kept = card.material === leaf && scene.overrideMaterial === null;
+	scene.remove(card);
+	for (const one of [leaf.map, leaf.normalMap, leaf, card.geometry, points.geometry, points.material]) one.dispose();
+}
 
 // ---- Baked visibility: where it is lower than that of the screen, the screen changes nothing.
 const dark = new Float32Array(ball.geometry.attributes.position.count).fill(0.1);
@@ -193,6 +212,34 @@ const level = await new GLTFLoader().loadAsync('baked.glb');
 differences.level = useBakedVisibility(level.scene) > 0 && useBakedVisibility(scene) === 1;
 ball.material = grey;
 ball.geometry.deleteAttribute('_visibility');
+
+// ---- Volumes of the level: with the screen's visibility, the lower of both.
+const room = new THREE.Scene().add(level.scene, new THREE.HemisphereLight(0xffffff, 0xffffff, Math.PI));
+room.updateMatrixWorld(true);
+const inside_room = new THREE.PerspectiveCamera(level.cameras[0].fov, width / height, 0.1, 100);
+level.cameras[0].matrixWorld.decompose(inside_room.position, inside_room.quaternion, inside_room.scale);
+inside_room.updateMatrixWorld();
+const file = await (await fetch('volumes.glb')).arrayBuffer();
+{
+	const volumes = new NookVolumes(file), at = { of: room, from: inside_room };
+	differences.noVolumes = volumes.texture;
+	const pass = new NookPass(room, inside_room, width, height, { volumes, normals: 'depth' });
+	const target = new THREE.WebGLRenderTarget(width, height, { type: THREE.HalfFloatType });
+	pass.render(renderer, target, target);
+	const open = read(volumes.texture, renderer), screen = read(pass.texture, renderer);
+	pictures.push({ words: 'room', values: bytes(read(pass._ao.depths, renderer)) }, { words: 'volumes', values: bytes(open) });
+	differences.lower = rmse(drawn({ volumes, view: 'visibility' }, at).colours, open.map((one, i) => Math.min(one, screen[i])));
+	const dark = drawn({ volumes, halfResolution: true, normals: 'pass', quality: 'low' }, at).colours, light = drawn({ halfResolution: true, normals: 'pass', quality: 'low' }, at).colours;
+	differences.volumesDarken = [dark.filter((one, i) => one > light[i] + 1e-3).length, mean(light) - mean(dark)];
+	const other = rendererOf({ reversedDepthBuffer: true });
+	differences.volumesReversed = rmse(drawn({ volumes, view: 'visibility' }, { ...at, on: other, from: inside_room.clone() }).colours, drawn({ volumes, view: 'visibility' }, at).colours);
+	other.dispose();
+	pass.dispose();
+	target.dispose();
+	volumes.dispose();
+	volumes.dispose();
+	differences.volumesDisposed = refusal(() => volumes.render(renderer, inside_room, null, null));
+}
 
 // ---- Sizes, disposal, lost context.
 {
@@ -238,6 +285,8 @@ ball.geometry.deleteAttribute('_visibility');
 
 const unlimited = new THREE.PerspectiveCamera(50, 1, 0.1, Infinity);
 const refused = [
+	refusal(() => new NookVolumes(file.slice(0, 4000))),
+	refusal(() => new NookPass(scene, camera, width, height, { volumes: 'volumes.glb' })),
 	refusal(() => new NookPass(scene, camera, width, height, { radius: -1 })),
 	refusal(() => new NookPass(scene, camera, width, height, { quality: 'ultra' })),
 	refusal(() => new NookPass(scene, camera, width, height, { radious: 1 })),
@@ -247,4 +296,5 @@ const refused = [
 	refusal(() => drawn({}, { from: unlimited })),
 	refusal(() => new NookAO(camera, 8, 8).render({ isWebGPURenderer: true, getContext: () => ({ isContextLost: () => false }) }, null)),
 ];
-globalThis.said = { width, height, patterns: [], projection: camera.projectionMatrix.elements, pictures, differences, refused, shadowed: mean(base.open) };
+globalThis.said = { width, height, patterns: [], projection: camera.projectionMatrix.elements,
+	room: [inside_room.projectionMatrix.elements, inside_room.matrixWorldInverse.elements], pictures, differences, refused, shadowed: mean(base.open) };

@@ -16,7 +16,7 @@ int nookSurfaceAt(vec3 point)
 	// The inverse of nookPosition.
 	float x = (dot(nook.right.xyz, point) - depth * nook.across_x.y - nook.aside.x) / (w * nook.across_x.x);
 	float y = (dot(nook.up.xyz, point) - depth * nook.across_y.y - nook.aside.y) / (w * nook.across_y.x);
-	vec2 place = clamp(vec2(x + 1.0, 1.0 - y) * 0.5, 0.0, 1.0) * nook.size + nook.origin;
+	vec2 place = clamp(vec2(x + 1.0, 1.0 - y) * 0.5, vec2(0.0, 0.0), vec2(1.0, 1.0)) * nook.size + nook.origin;
 	return nookDepth(ivec2(min(place, nook.size + nook.origin - 1.0))) > depth ? 1 : -1;
 }
 
@@ -35,7 +35,7 @@ bool nookBackFaces()
 	float slack = 1e-3 * reach + 1e-5 * length(a);
 	float height = -dot(front, a);
 	bool outside = height > reach + slack || height < low - slack;
-	vec3 middle = vec3(0.0);
+	vec3 middle = vec3(0.0, 0.0, 0.0);
 	for (int i = 0; i < count; ++i)
 	{
 		vec3 b = nook_offset + nook_step * vec3(nookPackedCorner(first + i).xyz);

@@ -20,7 +20,7 @@ vec3 nookReceive(ivec2 pixel)
 	float depth = nookDepth(pixel);
 	if (depth >= NOOK_SKY)
 	{
-		return vec3(0.0);
+		return vec3(0.0, 0.0, 0.0);
 	}
 	nook_base = nook_offset - nookTurned(nookPosition(pixel, depth));
 	nook_bias = max(nook.plane_bias, nookDepthError(depth) + nook.position_error);

@@ -18,5 +18,5 @@ float nookMaskHeight(vec3 normal)
 uvec4 nookCovered(int four, vec3 normal, float height)
 {
 	return nookMaskBits(nook_polygon.y, four, normal, nook_front.xyz, height, nook_front.w, nook_polygon.x, nook.radius,
-		uvec4(0xffffffffu));
+		uvec4(0xffffffffu, 0xffffffffu, 0xffffffffu, 0xffffffffu));
 }

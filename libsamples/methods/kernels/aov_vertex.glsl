@@ -6,7 +6,7 @@ vec3 nookFrontOf(int first, int count)
 {
 	vec3 start = vec3(nookPackedCorner(first).xyz);
 	vec3 before = nook_step * (vec3(nookPackedCorner(first + 1).xyz) - start);
-	vec3 sum = vec3(0.0);
+	vec3 sum = vec3(0.0, 0.0, 0.0);
 	for (int i = 2; i < count; ++i)
 	{
 		vec3 after = nook_step * (vec3(nookPackedCorner(first + i).xyz) - start);
@@ -81,7 +81,7 @@ void nookSetPolygon(int cluster, int polygon)
 
 // Layout polygons. Each corner has twelve vertices: two triangles of the side that its edge makes, one triangle of the lower
 // face and one of the upper face.
-void nookPolygonVertex(int cluster, int vertex)
+vec4 nookPolygonVertex(int cluster, int vertex)
 {
 	int corner = vertex / 12;
 	int part = vertex % 12;
@@ -89,26 +89,24 @@ void nookPolygonVertex(int cluster, int vertex)
 #ifdef NOOK_CHOOSE_FACES
 	if (!nookIsAsked())
 	{
-		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside the picture, as all vertices of this polygon: nothing is drawn
-		return;
+		return vec4(2.0, 2.0, 2.0, 1.0); // outside the picture, as all vertices of this polygon: nothing is drawn
 	}
 #endif
 	int i = corner - nook_polygon.x;
 	int next = i + 1 < nook_polygon.y ? i + 1 : 0;
 	int at = part == 6 || part == 9 ? 0 : part == 0 || part == 3 || part == 5 || part == 8 || part == 10 ? i : next;
 	int ring = part == 2 || part == 4 || part == 5 || part > 8 ? 1 : 0;
-	gl_Position = nook.clip * vec4(nookPrismPoint(at, ring), 1.0);
+	return nook.clip * vec4(nookPrismPoint(at, ring), 1.0);
 }
 
 // Layout prisms: a vertex of the file.
-void nookPrismVertex(int cluster, uvec4 point)
+vec4 nookPrismVertex(int cluster, uvec4 point)
 {
 	nookSetPolygon(cluster, int(point.w));
 #ifdef NOOK_CHOOSE_FACES
 	if (!nookIsAsked())
 	{
-		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside the picture, as all vertices of this polygon: nothing is drawn
-		return;
+		return vec4(2.0, 2.0, 2.0, 1.0); // outside the picture, as all vertices of this polygon: nothing is drawn
 	}
 #endif
 	vec3 offset = uintBitsToFloat(nookSeenCluster(cluster, 2).xyz);
@@ -116,5 +114,5 @@ void nookPrismVertex(int cluster, uvec4 point)
 	vec3 at = offset + step * vec3(point.xyz);
 	vec3 corner = nook_offset + nook_step * vec3(nookPackedCorner(nook_polygon.x).xyz);
 	bool lower = nook_polygon.z == 0 && dot(nook_front.xyz, at - corner) < 0.5 * nook.radius * nookShare().x;
-	gl_Position = nook.clip * vec4(at - (lower ? nookBehind() : 0.0) * nook_front.xyz, 1.0);
+	return nook.clip * vec4(at - (lower ? nookBehind() : 0.0) * nook_front.xyz, 1.0);
 }

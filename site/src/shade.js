@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Emitted modules in OpenGL ES 3.0, their block and their passes → visibility, and two of them on either side of a line.
-'use strict';
+import { bytesOf, data } from 'nook:page';
+import { aim, bindPictures, pictureOf, PICTURES, programOf } from './gl.js';
 
 const LAST_FRAGMENTS = `#version 300 es
 precision highp float;
@@ -27,8 +28,8 @@ void main()
 	colour = at.x == edge && edge > 0 && edge < size.x ? vec4(0.84, 0.24, 0.16, 1.0) : vec4(shown, 1.0);
 }`;
 
-const shading = data.shading;
-const methodNamed = name => shading.methods.find(method => method.name === name);
+export const shading = data.shading;
+export const methodNamed = name => shading.methods.find(method => method.name === name);
 
 // How an engine would call a pass of the list in a module's head.
 function passShader(gl, module, call, format) {
@@ -48,7 +49,7 @@ function fillBlock(gl, buffer, method, numbers) {
 }
 
 // One way of shading: a method, its module and its samples. Draws into pictures of its own.
-function makeShader(gl, method, { module, plan }, samples) {
+export function makeShader(gl, method, { module, plan }, samples) {
 	const pictures = plan.pictures.map(shape => pictureOf(gl, shape)), buffer = gl.createBuffer();
 	const tile = samples && pictureOf(gl, { format: 'quad', width: samples.width, height: samples.height }, samples.texels);
 	const programsOf = plan.passes.map(pass => programOf(gl, passShader(gl, module, pass.call, pictures[pass.picture].format)));
@@ -92,7 +93,7 @@ function drawFirstLevel(gl, program, pass, bound) {
 	gl.drawArrays(gl.TRIANGLES, 0, 3);
 }
 
-function drawSplit(gl, scene, left, right, { share, lit, up }) {
+export function drawSplit(gl, scene, left, right, { share, lit, up }) {
 	const program = programOf(gl, LAST_FRAGMENTS), place = name => gl.getUniformLocation(program, name);
 	gl.useProgram(program);
 	bindPictures(gl, program, { left, right, depths: scene.depths, normals: scene.normals });
@@ -105,7 +106,7 @@ function drawSplit(gl, scene, left, right, { share, lit, up }) {
 }
 
 // The tile that an emitted header holds: {width, height, texels}.
-function tileOfHeader(header) {
+export function tileOfHeader(header) {
 	const sides = /_tile_width = (\d+);[^]*_tile_height = (\d+);/.exec(header);
 	const rows = /_tile\[\d+\]\[4\] = \{\n([^]*?)\n\};/.exec(header)[1];
 	return { width: +sides[1], height: +sides[2], texels: Float32Array.from(rows.replace(/[{}f\s]/g, '').split(',').filter(Boolean), Number) };

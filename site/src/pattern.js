@@ -1,68 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The upper half: the program in a worker, a pattern while it relaxes, its measures beside the catalogue's, its files.
-'use strict';
+import { byId, data, drawPattern, make, publish, pointsAt, table } from 'nook:page';
+import { drawSection, drawSphere } from './cells.js';
+import { cancelProgram, hasWasm, program, succeedProgram } from './program.js';
 
 const SENTENCE_WASM = 'This browser has no WebAssembly (or no workers), so that the program cannot run in it: patterns are made by the command line alone.';
 const CELLS_UP_TO = 256; // more would take longer to draw than to make
 const REPLAY_FRAMES = 90; // at most still to be shown once the work is done
 
-const program = { worker: null, wasm: null, calls: new Map(), next: 1, busy: 0 };
-
-const hasWasm = () => typeof WebAssembly === 'object' && typeof Worker === 'function';
-
-function startWorker() {
-	const url = URL.createObjectURL(new Blob([data.program.worker], { type: 'text/javascript' }));
-	program.worker = new Worker(url);
-	URL.revokeObjectURL(url);
-	program.worker.onmessage = ({ data: said }) => {
-		const call = program.calls.get(said.id);
-		if (!call) return;
-		if (said.stage !== undefined) call.onProgress(said.stage, said.share);
-		else if (said.numbers) call.onPoints(said.start, said.numbers);
-		else {
-			program.calls.delete(said.id);
-			if (said.failed) call.reject(new Error(said.failed)); else call.resolve(said.answer);
-		}
-	};
-	program.worker.onerror = event => { for (const call of program.calls.values()) call.reject(new Error(event.message || 'the worker ended')); program.calls.clear(); };
-}
-
-// Compiled once; a worker that is ended leaves it to the next one.
-function compiledProgram() {
-	if (!program.wasm) program.wasm = WebAssembly.compile(bytesOf(data.program.wasm));
-	return program.wasm;
-}
-
-// One command: {code, stdout, stderr, files}. Rejected where it was cancelled.
-async function runProgram(command, { files = {}, take = [], onProgress = () => {}, onPoints = () => {} } = {}) {
-	const fresh = !program.worker;
-	if (fresh) startWorker();
-	const id = program.next++, worker = program.worker;
-	const answer = new Promise((resolve, reject) => program.calls.set(id, { resolve, reject, onProgress, onPoints }));
-	const wasm = fresh ? await compiledProgram() : undefined;
-	if (program.worker === worker) worker.postMessage({ id, wasm, command, files, take });
-	return answer;
-}
-
-// The program's own line where it fails.
-async function succeedProgram(command, io) {
-	const answer = await runProgram(command, io);
-	if (answer.code !== 0) throw new Error(answer.stderr.trim().replace(/^nook: /, ''));
-	return answer;
-}
-
-function cancelProgram() {
-	if (!program.worker) return;
-	program.worker.terminate();
-	program.worker = null;
-	for (const call of program.calls.values()) call.reject(new Error('cancelled'));
-	program.calls.clear();
-}
-
 // ---- What is asked for
 
-const made = { files: null, domain: '', count: 0, variant: '', data: null, listeners: [] };
-const fields = {};
+export const made = { files: null, domain: '', count: 0, variant: '', data: null, listeners: [] };
+export const fields = {};
 
 function field(form, name, element, attributes, text) {
 	const label = make(form, 'label', {}, text);
@@ -70,7 +19,7 @@ function field(form, name, element, attributes, text) {
 	return fields[name];
 }
 
-function drawRecipe() {
+export function drawRecipe() {
 	const form = byId('recipe');
 	const choice = (name, text, names, chosen) => {
 		const select = field(form, name, 'select', {}, text);
@@ -86,7 +35,7 @@ function drawRecipe() {
 	form.addEventListener('change', () => { if (!program.busy) byId('state').textContent = 'Not made yet with these choices.'; });
 }
 
-function patternCommand() {
+export function patternCommand() {
 	const { domain, count, variant, method, seed } = fields, words = ['pattern', '--domain', domain.value, '--count', count.value];
 	if (variant.value === 'centred') words.push('--centre');
 	if (variant.value === 'symmetric') words.push('--symmetric');
@@ -153,7 +102,7 @@ function showMade() {
 // ---- Making it
 
 // One task more or less.
-function setBusy(change, text, share = change > 0 ? 0 : 1) {
+export function setBusy(change, text, share = change > 0 ? 0 : 1) {
 	program.busy += change;
 	byId('make').disabled = program.busy > 0;
 	byId('cancel').disabled = program.busy === 0;
@@ -161,7 +110,7 @@ function setBusy(change, text, share = change > 0 ? 0 : 1) {
 	byId('state').textContent = text;
 }
 
-function tellProgress(what, share) {
+export function tellProgress(what, share) {
 	byId('progress').value = share;
 	byId('state').textContent = `${what}: ${Math.round(100 * share)} %`;
 }
@@ -218,7 +167,7 @@ function drawMeasures() {
 	}
 }
 
-function downloadButton(bar, text, name, content) {
+export function downloadButton(bar, text, name, content) {
 	const element = make(bar, 'button', { type: 'button' }, text);
 	element.addEventListener('click', () => {
 		const url = URL.createObjectURL(new Blob([content()], { type: 'text/plain' }));
@@ -229,7 +178,7 @@ function downloadButton(bar, text, name, content) {
 	});
 }
 
-function startPattern() {
+export function startPattern() {
 	if (hasWasm()) { makePattern(); return; }
 	byId('no-wasm').textContent = SENTENCE_WASM;
 	byId('no-wasm').hidden = false;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs in the live page: uses its controls as a person would.
+// Runs in the live site: uses its controls as a person would.
+const { byId, eye, fields, made, program, readScalars, settle, SKY, stage, state, update } = nookPage;
 const later = ms => new Promise(done => setTimeout(done, ms));
 const said = {}, idle = async () => { while (program.busy > 0) await later(20); };
 const choose = async values => { Object.entries(values).forEach(([name, value]) => { fields[name].value = value; }); byId('make').click(); };
 const press = key => byId('stage').dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true }));
 const drawings = () => +document.documentElement.dataset.stageDrawn;
 const drawnAgain = async act => { const before = drawings(); act(); while (drawings() === before) await later(20); };
-while (!document.documentElement.dataset.settled) await later(50);
+while (!document.documentElement.dataset.settled || !document.documentElement.dataset.started) await later(50);
 
 said.domains = [...fields.domain.options].map(one => one.value).join(' ');
 const shown = () => byId('pattern-picture').innerHTML.replace(/(cells|disk)\d+/g, '');

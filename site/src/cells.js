@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cells on the sphere, as it is seen from outside, and a section through those of the ball: what nook pattern -o FILE.svg shows.
-'use strict';
+import { clipHalfPlane, make } from 'nook:page';
 
 // Rows: right, up, towards the viewer; drawSpace() looks the same way.
 const SEEN = [[Math.cos(0.45), Math.sin(0.45), 0], [Math.sin(0.4) * Math.sin(0.45), -Math.sin(0.4) * Math.cos(0.45), Math.cos(0.4)],
@@ -46,11 +46,11 @@ function drawCellsOf(parent, label, points, weights, cellOf) {
 }
 drawCellsOf.serial = 0;
 
-function drawSphere(parent, points, weights) {
+export function drawSphere(parent, points, weights) {
 	const svg = drawCellsOf(parent, `sphere, the cells of ${points.length} directions`, points, weights, sphereCell);
 	for (const p of points.filter(q => inner(q, SEEN[2]) > 0)) {
 		make(svg, 'circle', { cx: inner(p, SEEN[0]).toFixed(4), cy: (-inner(p, SEEN[1])).toFixed(4), r: Math.min(0.055, 0.24 / Math.sqrt(points.length)).toFixed(3), style: 'fill:var(--ink)' });
 	}
 }
 
-const drawSection = (parent, points, weights) => drawCellsOf(parent, `ball, the cells of ${points.length} points cut at z = 0`, points, weights, sectionCell);
+export const drawSection = (parent, points, weights) => drawCellsOf(parent, `ball, the cells of ${points.length} points cut at z = 0`, points, weights, sectionCell);

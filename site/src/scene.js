@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The level: depth and normals of the traced view as the program cast them, or of any other by drawing the triangles.
-'use strict';
+import { bytesOf } from 'nook:page';
+import { bindPictures, pictureOf, programOf } from './gl.js';
 
-const SKY = 1e30;
+export const SKY = 1e30;
 const SCENE_VERTICES = `#version 300 es
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 uv;
@@ -28,7 +29,7 @@ void main()
 	normal = vec4(dot(n, seen) > 0.0 ? -n : n, 0.0);
 }`;
 
-function numbersOf(text, Kind) {
+export function numbersOf(text, Kind) {
 	const bytes = bytesOf(text);
 	return new Kind(bytes.buffer, 0, bytes.length / Kind.BYTES_PER_ELEMENT);
 }
@@ -41,7 +42,7 @@ function normalsOf({ list, indices, bytes }) {
 	return four;
 }
 
-function castScene(gl, view) {
+export function castScene(gl, view) {
 	const shape = { width: view.width, height: view.height }, depths = numbersOf(view.depth, Float32Array);
 	return { values: depths, depths: pictureOf(gl, { ...shape, format: 'scalar' }, depths),
 		normals: pictureOf(gl, { ...shape, format: 'quad' }, normalsOf(view.normals)) };
@@ -60,7 +61,7 @@ function maskPicture(gl, mask) {
 }
 
 // Made when the camera first moves: the page's first picture needs none of it.
-function triangleScene(gl, view) {
+export function triangleScene(gl, view) {
 	const buffer = (kind, numbers) => { const made = gl.createBuffer(); gl.bindBuffer(kind, made); gl.bufferData(kind, numbers, gl.STATIC_DRAW); return made; };
 	const vertices = gl.createVertexArray();
 	gl.bindVertexArray(vertices);
@@ -115,7 +116,7 @@ function drawTriangles(gl, { view, vertices, groups, masks, framebuffer }, matri
 
 // ---- The camera: where it was traced from, turned and moved.
 
-const eye = { yaw: 0, pitch: 0, at: [0, 0, 0], moved: false };
+export const eye = { yaw: 0, pitch: 0, at: [0, 0, 0], moved: false };
 
 // Columns of the camera's axes in the world, before it was turned: right, up, back.
 const axesOf = view => [0, 1, 2].map(k => view.world_from_camera.slice(4 * k, 4 * k + 3));
@@ -126,28 +127,28 @@ const turned = (v, axis, angle) => {
 	return v.map((part, i) => part * c + x[i] * s + axis[i] * d);
 };
 
-function eyeAxes(view) {
+export function eyeAxes(view) {
 	const axes = axesOf(view), yawed = axes.map(v => turned(v, [0, 1, 0], eye.yaw));
 	return yawed.map(v => turned(v, yawed[0], eye.pitch));
 }
 
 // Column by column; positions are from where the view was traced.
-function eyeMatrix(view) {
+export function eyeMatrix(view) {
 	const axes = eyeAxes(view);
 	return [0, 1, 2].flatMap(k => [...axes.map(v => v[k]), 0]).concat(axes.map(v => -dot3(v, eye.at)), 1);
 }
 
-function turnEye(view, yaw, pitch) {
+export function turnEye(view, yaw, pitch) {
 	const up = Math.asin(Math.max(-1, Math.min(1, -axesOf(view)[2][1])));
 	eye.yaw += yaw;
 	eye.pitch = Math.max(-1.5 - up, Math.min(1.5 - up, eye.pitch + pitch));
 	eye.moved = true;
 }
 
-function moveEye(view, right, up, back) {
+export function moveEye(view, right, up, back) {
 	const axes = eyeAxes(view);
 	eye.at = eye.at.map((part, i) => part + right * axes[0][i] + up * axes[1][i] + back * axes[2][i]);
 	eye.moved = true;
 }
 
-function resetEye() { Object.assign(eye, { yaw: 0, pitch: 0, at: [0, 0, 0], moved: false }); }
+export function resetEye() { Object.assign(eye, { yaw: 0, pitch: 0, at: [0, 0, 0], moved: false }); }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs in the live page: makes patterns of every domain, and a picture of every method, samples and filter.
+// Runs in the live site: makes patterns of every domain, and a picture of every method, samples and filter.
+const { byId, chooseMethod, fields, filtersOf, made, methodNamed, patternCommand, program, readScalars, shading, stage, state, update, view, wished } = nookPage;
 const later = ms => new Promise(done => setTimeout(done, ms));
 const base64 = floats => {
 	const bytes = new Uint8Array(floats.buffer);
@@ -7,7 +8,7 @@ const base64 = floats => {
 	for (let i = 0; i < bytes.length; i += 4096) text += String.fromCharCode(...bytes.subarray(i, i + 4096));
 	return btoa(text);
 };
-while (!document.documentElement.dataset.settled) await later(50);
+while (!document.documentElement.dataset.settled || !document.documentElement.dataset.started) await later(50);
 
 const patterns = [];
 for (const [domain, count, variant, method, seed] of [['disk', 9, 'symmetric', 'refine', 1], ['ball', 5, 'free', 'refine', 1], ['sphere', 6, 'free', 'electro', 3],

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lower half: what is chosen, the two pictures on either side of the slider, their figures; and the page as a whole.
-'use strict';
+// Every method: what is chosen, the two pictures on either side of the slider, and their figures.
+import { button, byId, bytesOf, data, make, publish, shortNumber, table } from 'nook:page';
+import { choiceBar } from './choices.js';
+import { lookAround } from './look.js';
+import { openGl, pictureOf, readScalars, timed } from './gl.js';
+import { downloadButton, made, setBusy, tellProgress } from './pattern.js';
+import { cancelProgram, succeedProgram } from './program.js';
+import { castScene, eye, eyeAxes, eyeMatrix, moveEye, numbersOf, resetEye, SKY, triangleScene, turnEye } from './scene.js';
+import { drawSplit, makeShader, methodNamed, shading, tileOfHeader } from './shade.js';
 
 const SENTENCE_GL = 'This browser has no WebGL2 that draws 32-bit floats (EXT_color_buffer_float), so that the level cannot be shaded in it.';
 const SAMPLES = { tile: 'a tile, made together', random: 'one pattern, turned at random', one: 'one pattern, everywhere the same', made: 'yours, from above, as a tile' };
 const FILTERS = { window: 'window', bilateral: 'bilateral', none: 'none' };
 const RIGHT = { rays: 'rays', random: 'the same, turned at random', raw: 'the same, unfiltered', open: 'nothing' };
-const view = data.view;
-const state = { method: shading.methods[0], samples: 'tile', filter: 'window', right: 'rays', lit: false, numbers: {}, modules: new Map() };
-const wished = { samples: 'tile', filter: 'window', right: 'rays' }; // by whoever looks, kept where a method has none of it
-const stage = { gl: null, cast: null, triangles: null, rays: null, open: null, left: null, right: null, serial: 0, gpu: null };
+export const view = data.view;
+export const state = { method: shading.methods[0], samples: 'tile', filter: 'window', right: 'rays', lit: false, numbers: {}, modules: new Map() };
+export const wished = { samples: 'tile', filter: 'window', right: 'rays' }; // by whoever looks, kept where a method has none of it
+export const stage = { gl: null, cast: null, triangles: null, rays: null, open: null, left: null, right: null, serial: 0, gpu: null };
 
 // ---- Modules: those of the page, or one that the program emits now
 
@@ -70,18 +77,7 @@ async function moduleFor(method, samples, filter) {
 
 // ---- What may be chosen
 
-const filtersOf = method => [...new Set(method.modules.filter(m => m.one === (state.samples === 'one')).map(m => m.filter))];
-
-function choiceBar(id, name, choices, chosen, choose, enabled = () => true) {
-	const bar = byId(id);
-	bar.replaceChildren();
-	bar.hidden = Object.keys(choices).length < 2;
-	make(bar, 'span', { class: 'name' }, name);
-	for (const [key, text] of Object.entries(choices)) {
-		const element = button(bar, text, key === chosen, () => choose(key), { 'data-choice': key });
-		element.disabled = !enabled(key);
-	}
-}
+export const filtersOf = method => [...new Set(method.modules.filter(m => m.one === (state.samples === 'one')).map(m => m.filter))];
 
 const pick = (names, keys) => Object.fromEntries(keys.filter(key => key in names).map(key => [key, names[key]]));
 
@@ -98,7 +94,7 @@ function drawChoices() {
 }
 
 // A setting that does not go with the method is replaced by one that does, and returns with a method that takes it.
-function settle() {
+export function settle() {
 	Object.assign(state, wished);
 	if (state.samples === 'made' && (!made.files || made.domain !== state.method.domain)) state.samples = 'tile';
 	if (!filtersOf(state.method).includes(state.filter)) state.filter = filtersOf(state.method)[0];
@@ -116,7 +112,7 @@ function slider(bar, text, { least, most, value, unit, nothing }, take) {
 	return input;
 }
 
-function chooseMethod(method) {
+export function chooseMethod(method) {
 	const bar = byId('setting-bar');
 	state.method = method;
 	state.numbers = { radius: method.radius_m };
@@ -153,7 +149,7 @@ async function shaderOf(side, samples, filter) {
 const rightWords = () => state.right === 'random' ? ['random', state.filter] : state.right === 'raw' ? [state.samples, 'none'] : null;
 
 // Resolved once it is drawn, or an error is told.
-async function update() {
+export async function update() {
 	const serial = ++stage.serial;
 	if (!stage.gl) return;
 	drawChoices();
@@ -211,7 +207,7 @@ const errorText = error => shortNumber(error) + (otherRadius() && error !== null
 function drawFigures() {
 	const words = rightWords(), method = state.method;
 	const nameOf = (samples, filter) => [method.name, method.samples.length ? SAMPLES[samples] : '', filter === 'none' ? 'no filter' : `filter ${filter}`].filter(Boolean).join(', ');
-	const names = [nameOf(state.samples, state.filter), words ? nameOf(...words) : state.right === 'rays' ? `rays, ${data.rays} a pixel` : 'nothing occludes'];
+	const names = [nameOf(state.samples, state.filter), words ? nameOf(...words) : state.right === 'rays' ? `rays, ${data.rays} per pixel` : 'nothing occludes'];
 	byId('left-name').textContent = names[0];
 	byId('right-name').textContent = names[1];
 	const errors = stage.errors || [null, null], gpu = stage.told ? stage.gpu === null ? '…' : `${stage.gpu.toFixed(2)} ms` : 'not told';
@@ -223,7 +219,7 @@ function drawFigures() {
 	tellStage(`${view.level}, ${eye.moved ? 'another view, drawn from its triangles' : `camera ${view.camera}`}, ${view.width} × ${view.height}. `
 		+ (eye.moved ? 'Rays were traced for the first view alone. ' : `The rays’ own standard error is ${shortNumber(view.reference_error)}. `)
 		+ (stage.told ? '' : 'This browser does not tell GPU times (EXT_disjoint_timer_query_webgl2). ')
-		+ 'Drag the picture, or focus it and use the arrow keys, to look around; W, A, S, D, Q and E move.');
+		+ '');
 	byId('back').hidden = !eye.moved;
 	byId('commands').textContent = commandLines();
 }
@@ -253,29 +249,13 @@ function commandLines() {
 
 // ---- The stage's own controls
 
-function lookAround(canvas) {
-	let last = null;
-	canvas.addEventListener('pointerdown', event => { last = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); });
-	canvas.addEventListener('pointerup', () => { last = null; });
-	canvas.addEventListener('pointermove', event => {
-		if (!last || event.buttons === 0) return;
-		turnEye(view, 0.004 * (event.clientX - last[0]), 0.004 * (event.clientY - last[1]));
-		last = [event.clientX, event.clientY];
-		settle();
-		update();
-	});
-	canvas.addEventListener('keydown', event => {
-		const far = view.radius_m / 4, turn = { ArrowLeft: [0.05, 0], ArrowRight: [-0.05, 0], ArrowUp: [0, 0.05], ArrowDown: [0, -0.05] }[event.key];
-		const step = { w: [0, 0, -far], s: [0, 0, far], a: [-far, 0, 0], d: [far, 0, 0], e: [0, far, 0], q: [0, -far, 0] }[event.key.toLowerCase()];
-		if ((!turn && !step) || event.ctrlKey || event.metaKey || event.altKey) return;
-		event.preventDefault();
-		if (turn) turnEye(view, ...turn); else moveEye(view, ...step);
-		settle();
-		update();
-	});
+function stepView(change) {
+	change();
+	settle();
+	update();
 }
 
-function startStage() {
+export function startStage() {
 	const canvas = byId('stage');
 	Object.assign(canvas, { width: view.width, height: view.height });
 	canvas.setAttribute('aria-label', `${view.level}: left of the slider the method, right of it what it is compared with`);
@@ -295,14 +275,9 @@ function startStage() {
 	downloadButton(byId('stage-bar'), 'Download this module', 'nook_ao.glsl', () => stage.left.chosen.module);
 	byId('back').hidden = true;
 	byId('stage-cancel').addEventListener('click', () => cancelProgram());
-	lookAround(canvas);
+	lookAround(canvas, byId('stage-pad'), { step: view.radius_m / 4, turn: (yaw, pitch) => stepView(() => turnEye(view, yaw, pitch)),
+		move: (right, up, back) => stepView(() => moveEye(view, right, up, back)) });
 	made.listeners.push(() => { settle(); if (state.samples === 'made') update(); else drawChoices(); });
 	chooseMethod(state.method);
 	return update();
 }
-
-drawMade(byId('made'), data, `${view.level}, ${view.triangle_count} triangles`);
-drawReading(Object.entries(data.reading));
-drawRecipe();
-Promise.resolve(startStage()).then(startPattern); // the first picture before the program takes the processor
-ready(() => {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// node live_page_files.cjs FOLDER <SAID: writes what live_page_script.js returns as files: patterns, and pictures as TIFF of 32-bit
+// node live_site_files.cjs FOLDER <SAID: writes what live_site_script.js returns as files: patterns, and pictures as TIFF of 32-bit
 // floats.
 'use strict';
 const { mkdirSync, readFileSync, writeFileSync } = require('node:fs');

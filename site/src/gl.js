@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // WebGL2 in few words: programs, pictures, passes over a whole picture, and the time that a GPU took.
-'use strict';
-
-const PICTURES = {
+export const PICTURES = {
 	scalar: gl => ({ inside: gl.R32F, format: gl.RED, type: gl.FLOAT, glsl: 'float', channels: 1 }),
 	quad: gl => ({ inside: gl.RGBA32F, format: gl.RGBA, type: gl.FLOAT, glsl: 'vec4', channels: 4 }),
 	counts: gl => ({ inside: gl.RGBA32UI, format: gl.RGBA_INTEGER, type: gl.UNSIGNED_INT, glsl: 'uvec4', channels: 4 }),
@@ -12,7 +10,7 @@ const VERTICES = `#version 300 es
 void main() { gl_Position = vec4(vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0), 0.0, 1.0); }`;
 
 // Null where the browser has no WebGL2, or draws no floats.
-function openGl(canvas) {
+export function openGl(canvas) {
 	const gl = canvas.getContext('webgl2', { antialias: false, depth: false, alpha: false, preserveDrawingBuffer: true });
 	return gl && gl.getExtension('EXT_color_buffer_float') ? gl : null;
 }
@@ -27,7 +25,7 @@ function compiledShader(gl, kind, text) {
 const programs = new Map();
 
 // Programs are compiled once per text.
-function programOf(gl, fragments, vertices = VERTICES) {
+export function programOf(gl, fragments, vertices = VERTICES) {
 	const key = vertices + fragments;
 	if (programs.has(key)) return programs.get(key);
 	const program = gl.createProgram();
@@ -47,7 +45,7 @@ function programOf(gl, fragments, vertices = VERTICES) {
 }
 
 // shape: {format, width, height, levels, layers}; the first level is filled where there are numbers.
-function pictureOf(gl, shape, numbers) {
+export function pictureOf(gl, shape, numbers) {
 	const { inside, format, type } = PICTURES[shape.format](gl), levels = shape.levels || 1;
 	const target = shape.format === 'counts' ? gl.TEXTURE_2D_ARRAY : gl.TEXTURE_2D;
 	const texture = gl.createTexture();
@@ -65,7 +63,7 @@ function pictureOf(gl, shape, numbers) {
 
 const framebuffers = new WeakMap();
 
-function aim(gl, picture, level = 0, layer = 0) {
+export function aim(gl, picture, level = 0, layer = 0) {
 	if (!framebuffers.has(gl)) framebuffers.set(gl, gl.createFramebuffer());
 	gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffers.get(gl));
 	if (picture.target === gl.TEXTURE_2D_ARRAY) gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, picture.texture, level, layer);
@@ -74,7 +72,7 @@ function aim(gl, picture, level = 0, layer = 0) {
 }
 
 // Textures by the names of their samplers; those that the program does not read are left out.
-function bindPictures(gl, program, pictures) {
+export function bindPictures(gl, program, pictures) {
 	Object.entries(pictures).forEach(([name, picture], unit) => {
 		const place = gl.getUniformLocation(program, name);
 		if (!place) return;
@@ -84,7 +82,7 @@ function bindPictures(gl, program, pictures) {
 	});
 }
 
-function readScalars(gl, picture) {
+export function readScalars(gl, picture) {
 	const four = new Float32Array(4 * picture.width * picture.height), one = new Float32Array(picture.width * picture.height);
 	aim(gl, picture);
 	gl.readPixels(0, 0, picture.width, picture.height, gl.RGBA, gl.FLOAT, four);
@@ -93,7 +91,7 @@ function readScalars(gl, picture) {
 }
 
 // Calls `tell` with milliseconds once they are known; false where the browser does not tell.
-function timed(gl, draw, tell) {
+export function timed(gl, draw, tell) {
 	const timer = gl.getExtension('EXT_disjoint_timer_query_webgl2');
 	if (!timer) { draw(); return false; }
 	const query = gl.createQuery();

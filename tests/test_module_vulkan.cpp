@@ -164,7 +164,9 @@ std::string spirvOf(const ModuleSettings& settings, const std::string& module, c
 	constexpr std::array<const char*, 3> kImageFormats{"r32f", "rgba32f", "rgba32ui"};
 	const bool hlsl = settings.target == GlslTarget::hlsl60;
 	writeFile(folder / "m.comp", module);
-	REQUIRE(passes(std::string("glslangValidator -V -S comp ") + (hlsl ? "-D -e main -DNOOK_VULKAN" : "-DNOOK_OUT_FORMAT=") +
+	// Without -Od, glslang joins multiplications and additions of HLSL. That moves areas by 1e-5, which take the root of a
+	// difference.
+	REQUIRE(passes(std::string("glslangValidator -V -S comp ") + (hlsl ? "-D -Od -e main -DNOOK_VULKAN" : "-DNOOK_OUT_FORMAT=") +
 					   (hlsl ? "" : kImageFormats[static_cast<std::size_t>(format)]) + " -DNOOK_PASS=" + number + " -o '" +
 					   folder / "m.spv" + "' '" + folder / "m.comp" + "'",
 				   folder));
@@ -300,10 +302,8 @@ TEST_CASE("module: HLSL and Vulkan's GLSL compute one picture, that of nook shad
 			checkSamePicture(shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility, glsl);
 		}
 		settings.target = GlslTarget::hlsl60;
-		// Areas differ by 1e-5, for a reason that is not known yet. A GPU's compiler joins multiplications and additions its own
-		// way.
-		const bool software = vulkan.name().find("llvmpipe") != std::string::npos;
-		const float most = one.shade.method == ShadeMethod::vo_area ? 2e-5F : software ? 1e-6F : 1e-5F;
+		// A GPU's compiler joins multiplications and additions its own way.
+		const float most = vulkan.name().find("llvmpipe") != std::string::npos ? 1e-6F : 2e-5F;
 		const float found = largestDifference(glsl, computed(gbuffer, settings).visibility);
 		CAPTURE(1e6F * found);
 		CHECK(found <= most);

@@ -8,8 +8,8 @@ Emits the GLSL module while the project builds, with patterns made for it, and l
 
 TARGET           a target of this project; it is built after the files and finds them by #include "NAME.h"
 NAME             of the files: NAME.glsl, and NAME.h, which fills the module's uniform block and holds its tiles
-METHODS          what the module offers; or alone: aov or aov-mask, the stages that draw the files of nook_add_volumes, for 330 or
-                 430 and without NAME.h
+METHODS          what the module offers; or alone: aov or aov-mask, the stages that draw the files of nook_add_volumes, without
+                 NAME.h; aov-mask not for es300
 COUNTS           samples of each method but statvo and slices, in the same order: patterns and tiles are made for them; with slices
                  counted in as well, a tile is made of that many slices in each pixel, in place of the kernel's own
 PATTERNS         or else a file for each of them, of nook pattern or nook tile
@@ -41,8 +41,8 @@ function(nook_add_module target)
 	endif()
 	set(language glsl)
 	if(DEFINED arg_HLSL)
-		if(NOT arg_HLSL STREQUAL "60" OR DEFINED arg_GLSL OR arg_METHODS MATCHES "^aov")
-			message(FATAL_ERROR "nook_add_module: HLSL: found '${arg_HLSL}', expected 60, without GLSL, for other methods than volumes")
+		if(NOT arg_HLSL STREQUAL "60" OR DEFINED arg_GLSL)
+			message(FATAL_ERROR "nook_add_module: HLSL: found '${arg_HLSL}', expected 60, without GLSL")
 		endif()
 		set(language hlsl)
 	elseif(NOT arg_GLSL MATCHES "^(330|430|es300|vulkan)$")
@@ -50,8 +50,8 @@ function(nook_add_module target)
 	endif()
 	_nook_check_methods("${arg_METHODS}" "${arg_COUNTS}" "${arg_PATTERNS}" sampled)
 	_nook_check_options(nook_add_module "${arg_OPTIONS}" -o --methods --patterns --glsl --hlsl --recipe)
-	if(arg_METHODS MATCHES "^aov" AND NOT arg_GLSL MATCHES "^(330|430)$")
-		message(FATAL_ERROR "nook_add_module: GLSL: found '${arg_GLSL}', expected 330 or 430 for ${arg_METHODS}")
+	if(arg_METHODS STREQUAL "aov-mask" AND arg_GLSL STREQUAL "es300")
+		message(FATAL_ERROR "nook_add_module: GLSL: found 'es300', expected 330, 430 or vulkan for aov-mask")
 	endif()
 	if(arg_PATTERNS AND (DEFINED arg_TILE OR arg_PATTERN_OPTIONS OR arg_TILE_OPTIONS))
 		message(FATAL_ERROR "nook_add_module: found TILE, PATTERN_OPTIONS or TILE_OPTIONS with PATTERNS, expected them with COUNTS")

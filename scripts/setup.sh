@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs missing packages for building and testing nook on Debian 12. Quick if nothing is missing.
-# Usage: setup.sh [aarch64] [windows] [wasm] [debian] [targets] [farm] [library] [ogre] [godot] [blender]. The first three add cross
+# Usage: setup.sh [aarch64] [windows] [wasm] [debian] [targets] [farm] [library] [ogre] [godot] [moderngl] [blender]. The first three add cross
 # compilers and emulators for ARM64, Windows and the browser, `debian` adds packaging tools, `targets` all four; `farm` adds the
 # engines that scripts/farm.sh starts, `library` the tools for the wheel and its figures, `ogre` and `godot` the engines of these
-# examples, `blender` Blender for the test of its add-on.
+# examples, `moderngl` the Python package for a test, `blender` Blender for the test of its add-on.
 set -eu
 
 packages="g++ clang llvm libclang-rt-14-dev cmake ninja-build make ccache git
@@ -27,11 +27,12 @@ for target in "$@"; do
 	debian) packages="$packages lintian dpkg-dev fakeroot" ;;
 	library) packages="$packages python3-matplotlib patchelf" ;;
 	ogre) packages="$packages libogre-1.12-dev" ;;
+	moderngl) packages="$packages python3-moderngl" ;;
 	godot) packages="$packages godot3" ;;
 	blender) packages="$packages blender" ;;
 	farm) packages="$packages slurm-wlm munge snakemake procps" ;;
 	*)
-		echo "setup.sh: found '$target', expected aarch64, windows, wasm, debian, targets, farm, library, ogre, godot, blender or nothing" >&2
+		echo "setup.sh: found '$target', expected aarch64, windows, wasm, debian, targets, farm, library, ogre, godot, moderngl, blender or nothing" >&2
 		exit 1
 		;;
 	esac

@@ -3,50 +3,26 @@
 // SPDX-License-Identifier: MIT
 //
 // Draws the static ambient occlusion volumes of a file that `nook volumes` wrote over the depth and normals of a frame: visibility of
-// static surfaces, 1 where open. Four stages are in this one file. It has no #version: include it after yours, and define one of these
-// first:
-//   #define NOOK_VERTEX    vertex stage of the volumes; with NOOK_PRISMS for files of --layout prisms
-//   #define NOOK_FRAGMENT  fragment stage of the volumes; one depth read per fragment
-//   #define NOOK_RESOLVE   fragment stage over the picture, from the sums of the volumes to visibility; no depth reads
-//   #define NOOK_SPARSE    only where Camera::every is above 1: fragment stage over the whole picture, which interpolates the visibility
-//                          of the drawn pixels, nook_cells, and discards pixels for which they are no good; at most 51 depth reads
-// Each stage has its main(). nook_volumes.h reads the file, nook_volumes_draw.h fills the uniform block and the clusters of a frame.
-// Both headers come with nook, are MIT, and have no dependencies.
-//
-// Once: nook_volumes::Volumes::open. Upload corners() and polygons(): buffer textures nook_corners (RGBA16UI) and
-// nook_polygons (RG32UI). With prisms, vertices() as well, as the attribute nook_point (location 1, four
-// GL_UNSIGNED_SHORT, 8 bytes apart), and indices() as elements (GL_UNSIGNED_SHORT).
-// Every frame: nook_volumes::Frame::set; its block is the uniform block NookVolumes; Frame::seen of every cluster makes the
-// buffer texture nook_clusters (RGBA32UI, four texels a cluster).
-//
-// Drawing, for each cluster i with Frame::inSight:
-//   glVertexAttribI1i(0, i);
-//   glDrawArrays(GL_TRIANGLES, 12 * first_corner, 12 * corner_count); // or, with prisms:
+// static surfaces, 1 where open. Stages: define one of these macros first, after your #version, for its main():
+//   NOOK_VERTEX (with NOOK_PRISMS for files of --layout prisms), NOOK_FRAGMENT: the volumes; one depth read per fragment
+//   NOOK_RESOLVE, NOOK_SPARSE: the picture; NOOK_SPARSE where one pixel of 9 or 25 was drawn, at most 51 depth reads.
+// Once: nook_volumes::Volumes::open (nook_volumes.h; volumes_file.js of the npm package nook-ao). Upload corners() and polygons() as
+// buffer textures RGBA16UI and RG32UI, nook_corners and nook_polygons.
+// Every frame: nook_volumes::Frame::set (nook_volumes_draw.h); its block is the uniform block NookVolumes. Frame::seen of every cluster
+// makes buffer textures RGBA32UI, four texels a cluster, nook_clusters.
+// Draw call of each cluster i with Frame::inSight:
+//   glVertexAttribI1i(0, i); // or NOOK_CLUSTER, defined as a uniform of yours, gl_DrawID, in Vulkan gl_InstanceIndex
+//   glDrawArrays(GL_TRIANGLES, 12 * first_corner, 12 * corner_count);
+// With prisms the attribute nook_point (location 1) is vertices(), four unsigned 16-bit integers, and the call
 //   glDrawElementsBaseVertex(GL_TRIANGLES, index_count, GL_UNSIGNED_SHORT, 2 * first_index, first_vertex);
-// or all in one call of glMultiDrawArraysIndirect (OpenGL 4.3), where nook_cluster (location 0) is an attribute with divisor 1 of the
-// numbers 0, 1, 2 ..., and i the base instance.
-// To pass the number of the cluster in another way, define NOOK_CLUSTER first: as a uniform of yours, gl_DrawID, or where the base
-// instance is i, gl_InstanceIndex (Vulkan).
+// All in one call: glMultiDrawArraysIndirect, where nook_cluster has divisor 1 and holds 0, 1, 2 ..., and i is the base instance.
 // States: depth test against the depth buffer of the frame, no depth writes; depth clamp; front faces counter-clockwise (clockwise where
 // Frame::mirrored). Clusters that do not contain the eye: cull back faces, depth test "less or equal". Clusters that do
-// (Frame::holdsEye): cull front faces, depth test "greater or equal"; reversed depth has the opposite tests. With EXT_depth_bounds_test
-// and one call per cluster, glDepthBoundsEXT with Frame::depthBounds skips fragments of volumes that float between the eye and a surface.
-// Without depth clamp (WebGL has it as EXT_depth_clamp): define NOOK_ANY_DEPTH for the vertex stage and draw without a depth test. The
-// picture is the same, but more fragments find that they have nothing to add.
-// Fewer fragments: define NOOK_CHOOSE_FACES for the vertex stage and draw all clusters in sight twice, first with the states of clusters
-// that do not contain the eye and nook_faces = 1, then with the other states and nook_faces = 2. Each volume is then drawn by the faces,
-// front or back, that seem to cover fewer pixels without any effect; to decide, the vertex stage reads two depths per corner of the
-// polygon (NOOK_DEPTH). This is only for files with nook_volumes::kExactBounds: other volumes are cut off where they may still occlude
-// a little, and which part is lost depends on the faces.
-// Target: R16F (or R32F; R8 would saturate at 1), cleared to 0, blended with GL_ONE, GL_ONE. The resolve stage reads it as nook_sums.
-// With Camera::every above 1 only one pixel of every x every is drawn: the target has ceil(width / every) columns and
-// ceil(height / every) rows, and its depth buffer holds the depths of those pixels. nook_depths and nook_normals always are those of the
-// whole picture. After NOOK_RESOLVE, fill the whole picture, whose target has a stencil buffer:
-//   1. Clear the stencil to 0. Draw NOOK_SPARSE with the same block; it sets the stencil to 1 where it draws (GL_ALWAYS, GL_REPLACE).
-//   2. It discards about a tenth of the pixels: thin objects, edges, sharp creases. Draw these where the stencil is 0 (GL_EQUAL,
-//      GL_KEEP): the volumes into a target of the size of the picture, with the block of a Frame whose Camera::every is 1
-//      (nook_clusters stays as it is), then NOOK_RESOLVE into the picture of step 1.
+// (Frame::holdsEye): cull front faces, depth test "greater or equal"; reversed depth has the opposite tests. Without depth clamp set
+// NOOK_ANY_DEPTH for the vertex stage and draw without a depth test.
+// nook's page "Drawing occlusion volumes" says how NOOK_CHOOSE_FACES spares fragments, and NOOK_SPARSE draws one pixel of 9 or 25.
 // Together with a screen-space method, take min(this visibility, that one): then an occluder that both see counts once.
+// Target: R16F (or R32F; R8 would saturate at 1), cleared to 0; blending adds. The resolve stage reads it as nook_sums.
 #if __VERSION__ < 330
 #error nook: this module needs #version 330 or later
 #endif
@@ -431,7 +407,12 @@ vec3 nookNormal(ivec2 pixel)
 
 vec3 nook_base;  // nook_offset relative to the receiver, which is the surface that the pixel shows
 float nook_bias; // metres: a receiver closer to the plane of a polygon is not occluded by it
-vec3 nookCorner(int i);
+
+// Corner i of the polygon relative to the receiver.
+vec3 nookCorner(int i)
+{
+	return nook_base + nook_step * vec3(nookPackedCorner(nook_polygon.x + i).xyz);
+}
 
 // View-space position of the surface that a pixel shows, from its depth. With NDC x and y of the pixel and clip-space w at that
 // depth, this is the inverse of the projection.
@@ -664,12 +645,6 @@ float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, fl
 
 // Fragment stage of the volumes: from a pixel that a volume covers to the occlusion of the surface there by the polygon.
 
-// Corner i of the polygon relative to the receiver.
-vec3 nookCorner(int i)
-{
-	return nook_base + nook_step * vec3(nookPackedCorner(nook_polygon.x + i).xyz);
-}
-
 // From view space to the axes of the world.
 vec3 nookTurned(vec3 v)
 {
@@ -728,11 +703,17 @@ float nookCompensated(float sum)
 }
 
 uniform sampler2D nook_sums; // the picture of the fragment stage
+
+float nookResolved(ivec2 cell)
+{
+	return 1.0 - nookCompensated(texelFetch(nook_sums, cell, 0).r);
+}
+
 layout(location = 0) out float nook_visibility;
 
 void main()
 {
-	nook_visibility = 1.0 - nookCompensated(texelFetch(nook_sums, ivec2(gl_FragCoord.xy), 0).r);
+	nook_visibility = nookResolved(ivec2(gl_FragCoord.xy));
 }
 #endif // NOOK_RESOLVE
 
@@ -903,15 +884,20 @@ float nookSparse(ivec2 pixel)
 	return sum / weights;
 }
 
-layout(location = 0) out float nook_visibility;
-
-void main()
+float nookKnown(ivec2 pixel)
 {
-	float visibility = nookSparse(ivec2(gl_FragCoord.xy));
+	float visibility = nookSparse(pixel);
 	if (visibility < 0.0)
 	{
 		discard; // left for a second drawing at every pixel
 	}
-	nook_visibility = visibility;
+	return visibility;
+}
+
+layout(location = 0) out float nook_visibility;
+
+void main()
+{
+	nook_visibility = nookKnown(ivec2(gl_FragCoord.xy));
 }
 #endif // NOOK_SPARSE

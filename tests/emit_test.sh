@@ -80,7 +80,7 @@ fails 1 '--normals: found without a .glsl file' emit --methods vo-line --pattern
 fails 1 '--filter: found without a .glsl file' emit --methods vo-line --patterns kept_tile.json --filter window -o m.js
 fails 1 "--block: found 'integers', expected mixed or floats" emit --methods vo-line --patterns kept_tile.json --block integers -o m.h
 fails 1 '--block: found with --methods aov' emit --methods aov --block floats --glsl 330 -o m.glsl
-fails 1 'm.js: found a script' emit --methods aov --glsl 330 -o m.js
+fails 1 'm.js: found no shader' emit --methods aov --glsl 330 -o m.js
 works '' emit --methods alchemy --patterns kept_up.json --depth-levels 2 --filter bilateral --resolution half --gather --glsl 330 -o m.glsl
 for function in nookCoarser nookBilateralY nookAlchemyFull nookGather; do
 	grep -q "^float $function(" m.glsl || problem "no $function"
@@ -119,7 +119,6 @@ fails 1 'm.hlsl: found with --glsl, expected -o FILE.glsl' emit --methods slices
 fails 1 'm.glsl: found with --hlsl, expected -o FILE.hlsl' emit --methods slices --hlsl 60 -o m.glsl
 fails 1 '--hlsl: found without a .hlsl' emit --methods slices --hlsl 60 -o m.cs
 fails 1 "--hlsl: found '50', expected 60" emit --methods slices --hlsl 50 -o m.hlsl
-fails 1 '--hlsl: found with --methods aov' emit --methods aov --hlsl 60 -o m.hlsl
 fails 1 'm.py: found' emit --methods aov --glsl 330 -o m.py
 fails 3 '--filter window: vo-line: found 1 variants' emit --methods vo-line --patterns kept_disk.json --filter window --glsl 330 -o m.glsl
 works '' emit --methods slices --filter window --glsl 330 -o m.glsl
@@ -173,13 +172,15 @@ for target in "330 core" "430 core" "300 es" "450 vulkan"; do
 	done
 done
 there m.glsl
-fails 1 '--glsl: found es300, which has no logic operations on render targets' emit --methods aov-mask --glsl es300 -o m.glsl
-fails 1 '--glsl: found none' emit --methods aov -o m.glsl
+fails 1 'aov-mask: found --glsl es300, which has no logic operations on render targets' emit --methods aov-mask --glsl es300 -o m.glsl
+fails 1 '--glsl: missing' emit --methods aov -o m.glsl
 fails 1 '--patterns: found with --methods aov' emit --methods aov --patterns kept_disk.json --glsl 330 -o m.glsl
 fails 1 '--filter: found with --methods aov' emit --methods aov --filter window --glsl 330 -o m.glsl
 fails 1 '--directions: found with another method, expected aov-mask' emit --methods aov --directions 64 --glsl 330 -o m.glsl
 fails 1 '--directions: found .?48' emit --methods aov-mask --directions 48 --glsl 330 -o m.glsl
 fails 1 '--directions: found with another method' emit --methods statvo --directions 64 --glsl 330 -o m.glsl
-fails 1 'm.h: found a header' emit --methods aov --glsl 330 -o m.h
+fails 1 'aov-mask: found --wgsl, which has no logic operations' emit --methods aov-mask --wgsl -o m.wgsl
+fails 1 'm.glsl: found with --hlsl, expected -o FILE.hlsl' emit --methods aov --hlsl 60 -o m.glsl
+fails 1 'm.h: found no shader' emit --methods aov --glsl 330 -o m.h
 fails 1 '--methods:.*or aov or aov-mask alone' emit --methods aov,statvo --glsl 330 -o m.glsl
 finish

@@ -118,6 +118,7 @@ try "found 'SEED" 'nook_add_module(a NAME m SEED 3 METHODS vo-line COUNTS 3 GLSL
 try "found 0 COUNTS and 0 PATTERNS, expected 1 of one of them, as METHODS that take samples, or 2 with slices" 'nook_add_module(a NAME m METHODS slices vo-line GLSL 330)'
 try "TILE: found '1' with COUNTS of slices" 'nook_add_module(a NAME m METHODS slices COUNTS 2 TILE 1 GLSL 330)'
 try "found RECIPE or SCRIPT with aov" 'nook_add_module(a NAME m METHODS aov SCRIPT GLSL 330)'
+try "GLSL: found 'es300', expected 330, 430 or vulkan for aov-mask" 'nook_add_module(a NAME m METHODS aov-mask GLSL es300)'
 try "OPTIONS: found '--recipe', expected" 'nook_add_module(a NAME m METHODS slices GLSL 330 OPTIONS --recipe paper)'
 try "OPTIONS: found '-o', expected" 'nook_add_module(a NAME m METHODS slices GLSL 330 OPTIONS --filter bilateral -o m.js)'
 try "found 'm' twice" 'nook_add_module(a NAME m METHODS vo-line COUNTS 3 GLSL 330)

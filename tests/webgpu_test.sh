@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: webgpu_test.sh PROGRAM SOURCE FOLDER. nook emit --wgsl: complete shaders of every method, drawn by Dawn, equal the pictures
-# of nook shade within 1/255; what is refused. WebGPU for Node.js is downloaded from npm's registry once into FOLDER. Exit code 77: no
+# Usage: webgpu_test.sh PROGRAM SOURCE FOLDER. nook emit --wgsl: complete shaders of every method and volumes, drawn by Dawn, equal the
+# pictures of nook shade within 1/255; what is refused. WebGPU for Node.js is downloaded from npm's registry once into FOLDER. Exit code 77: no
 # npm, registry or Vulkan driver.
 set -u
 nook=$(realpath "$1")
@@ -80,6 +80,34 @@ for name in $names; do
 done
 cat said
 
+# Volumes: with and without depth clamp, faces chosen one by one, prisms, an eye within volumes, a depth buffer.
+volumes=
+# scene NAME EMIT_OPTIONS VOLUME_OPTIONS CAMERA_OPTIONS…
+scene()
+{
+	name=$1 emits=$2 makes=$3
+	shift 3
+	"$nook" emit --methods aov $emits --wgsl -o "$name.wgsl" && "$nook" volumes builtin:cornell --distance 0.4 $makes -o "$name.glb" >log 2>&1 &&
+		"$nook" gbuffer builtin:cornell --size 80x60 "$@" -o "$name.exr" >log 2>&1 &&
+		"$nook" shade "$name.exr" --method aov --volumes "$name.glb" -o "${name}_expected.exr" >log 2>&1 || problem "$name: $(tail -n 1 log)"
+	volumes="$volumes $name"
+}
+scene volumes "" ""
+scene volumes-clip "" ""
+scene volumes-faces "" --exact-bounds
+scene volumes-prisms "" "--layout prisms"
+scene volumes-within "" "" --eye 0.1,0.3,0.2 --target=-0.2,0.1,-0.4
+scene volumes-device-clip "--depth device" ""
+node "$cache/volumes.mjs" "$source" $volumes >said 2>log
+code=$?
+[ $code = 0 ] || problem "volumes.mjs: exit code $code: $(tail -n 3 log)"
+for name in $volumes; do
+	checks=$((checks + 1))
+	result=$(sed -n "s/^$name //p" said)
+	[ -n "$result" ] && [ "${result##* }" = 0 ] || problem "$name: found '$result', expected no pixel beyond 1/255"
+done
+cat said
+
 # refuses PATTERN OPTIONS…
 refuses()
 {
@@ -94,5 +122,5 @@ refuses 'refused.glsl: found with --wgsl, expected -o FILE.wgsl' --methods slice
 refuses '--wgsl: missing, expected one for the .wgsl file' --methods slices -o refused.wgsl
 refuses '--glsl: found with --wgsl, expected one language' --methods slices --wgsl --glsl 330 -o refused.wgsl
 refuses '--wgsl: found with --hlsl, expected one language' --methods slices --wgsl --hlsl 60 -o refused.wgsl
-refuses '--wgsl: found with --methods aov, expected a screen-space method' --methods aov --wgsl -o refused.wgsl
+refuses 'aov-mask: found --wgsl, which has no logic operations' --methods aov-mask --wgsl -o refused.wgsl
 finish

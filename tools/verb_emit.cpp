@@ -59,6 +59,10 @@ std::string languageOption(const EmitOptions& options)
 {
 	return isHlsl(options) ? "--hlsl" : options.wgsl ? "--wgsl" : "--glsl";
 }
+std::string languageText(const EmitOptions& options)
+{
+	return " " + languageOption(options) + (options.wgsl ? "" : " " + targetName(options.settings.target));
+}
 bool hasLanguage(const EmitOptions& options)
 {
 	return options.given("--glsl") || options.given("--hlsl") || options.wgsl;
@@ -129,8 +133,8 @@ void declare(CLI::App& app, EmitOptions& options)
 		 {"--glsl", takesChoice(glslTargets(), settings.target),
 		  "Language of the .glsl file: OpenGL 3.3, OpenGL 4.3 (explicit bindings), OpenGL ES 3.0, or Vulkan (GLSL 4.50)"},
 		 {"--hlsl", takesChoice(hlslTargets(), options.hlsl),
-		  "Language of the .hlsl file instead: HLSL, shader model 6.0 (Direct3D 12, Unity, Unreal)", screen},
-		 {"--wgsl", takesFlag(options.wgsl), "WGSL instead, in a .wgsl file (WebGPU, Bevy, Babylon.js)", screen},
+		  "Language of the .hlsl file instead: HLSL, shader model 6.0 (Direct3D 12, Unity, Unreal)"},
+		 {"--wgsl", takesFlag(options.wgsl), "WGSL instead, in a .wgsl file (WebGPU, Bevy, Babylon.js)"},
 		 {"--textures", takesChoice(kModuleTextures, settings.textures),
 		  "How a .glsl file reads textures: tiles and packed pictures directly (fixed, default); all of them through macros that "
 		  "you may define first; or that, with textures apart from their sampler (separate, Vulkan)",
@@ -353,7 +357,7 @@ std::string emitCommand(const EmitOptions& options, const std::vector<std::strin
 	}
 	if (glsl || settings.device_depth)
 	{
-		command += options.wgsl ? " --wgsl" : (isHlsl(options) ? " --hlsl " : " --glsl ") + targetName(settings.target);
+		command += languageText(options);
 	}
 	return command;
 }
@@ -391,36 +395,28 @@ std::string addMethod(EmitOptions& options, ShadeMethod one, const std::string* 
 void emitVolumes(const EmitOptions& options, bool mask)
 {
 	checkOutputs(options.outputs, kModuleFormats, {});
+	checkLanguage(options);
 	const GlslTarget target = options.settings.target;
-	const std::string target_name = targetName(target);
-	if (!hasLanguage(options))
-	{
-		refuse("--glsl: found none, expected a language for " + options.methods);
-	}
 	if (!drawsVolumes(target, mask))
 	{
-		refuse("--glsl: found " + target_name +
-			   ", which has no logic operations on render targets, expected 330, 430 or vulkan for " + options.methods);
+		refuse(options.methods + ": found" + languageText(options) +
+			   ", which has no logic operations on render targets, expected --glsl 330, 430, vulkan or --hlsl");
+	}
+	for (const std::string& path : options.outputs.files)
+	{
+		if (!isShader(path))
+		{
+			refuse(path + ": found no shader, expected one alone: nook_volumes_draw.h fills the block");
+		}
 	}
 	std::string command = "nook emit --methods " + options.methods;
 	command += options.settings.device_depth ? " --depth device" : "";
 	command += options.given("--directions") ? " --directions " + std::to_string(options.directions) : "";
-	command += " --glsl " + target_name;
-	const AovTextSettings text{target, mask ? options.directions : 0, options.settings.device_depth};
-	for (const std::string& path : options.outputs.files)
-	{
-		if (formatOf(path, kModuleFormats) == ".hlsl" || formatOf(path, kModuleFormats) == ".wgsl" || !isShader(path))
-		{
-			refuse(path + ": found " +
-				   (isScript(path)                           ? "a script"
-					: formatOf(path, kModuleFormats) == ".h" ? "a header"
-															 : "another file") +
-				   ", expected a .glsl file alone: nook_volumes_draw.h fills the block");
-		}
-	}
+	command += languageText(options);
 	Facts facts = verbFacts("emit");
 	facts.text("command", command);
 	facts.text("method", options.methods);
+	const AovTextSettings text{target, mask ? options.directions : 0, options.settings.device_depth};
 	writeOutputs(options.outputs,
 				 [&](const std::string&) {
 					 return volumesGlsl(text, {command, NOOK_VERSION, {}, {}});
@@ -430,12 +426,12 @@ void emitVolumes(const EmitOptions& options, bool mask)
 
 void run(EmitOptions& options, VerbProgress&)
 {
+	options.settings.target = options.wgsl ? GlslTarget::wgsl : options.hlsl ? GlslTarget::hlsl60 : options.settings.target;
 	if (const MethodRow* const row = methodNamed(options.methods); row != nullptr && row->kind == MethodKind::volumes)
 	{
 		emitVolumes(options, row->masks);
 		return;
 	}
-	options.settings.target = options.wgsl ? GlslTarget::wgsl : options.hlsl ? GlslTarget::hlsl60 : options.settings.target;
 	const std::vector<ShadeMethod> methods = methodsOf(options.methods);
 	const std::vector<std::string> patterns = partsOf(options.patterns);
 	const std::vector<std::size_t> counts = countsOf(options, patterns.size());

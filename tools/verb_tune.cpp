@@ -143,28 +143,25 @@ void checkPlaces(TuneOptions& options)
 std::vector<std::string> searchedMethods(const TuneOptions& options)
 {
 	std::vector<std::string> methods = partsOf(options.methods);
-	const auto draws = [&options](const MethodRow& row)
-	{
-		return row.kind != MethodKind::volumes || drawsVolumes(options.emit.target, row.masks);
-	};
+	const GlslTarget target = options.emit.target;
 	for (const std::string& method : methods)
 	{
 		const MethodRow* const row = methodNamed(method);
-		if (row != nullptr && !draws(*row))
+		if (row != nullptr && !drawsVolumes(target, row->masks))
 		{
-			refuse("--glsl: found " + std::string(glslTargets()[static_cast<std::size_t>(options.emit.target)]) + " with " +
-				   method + ", expected 330, 430 or vulkan");
+			refuse("--glsl: found " + std::string(glslTargets()[static_cast<std::size_t>(target)]) + " with " + method +
+				   ", expected 330, 430 or vulkan");
 		}
 		if (row != nullptr ? !row->emitted : assetNamed(method) == nullptr)
 		{
 			refuseValue("--methods", method, "some of " + searchedNames());
 		}
 	}
-	if (!options.methods.empty() || drawsVolumes(options.emit.target, true))
+	if (!options.methods.empty() || drawsVolumes(target, true))
 	{
 		return methods;
 	}
-	return partsOf(methodNames([&draws](const MethodRow& row) { return row.emitted && draws(row); }, ",") +
+	return partsOf(methodNames([target](const MethodRow& row) { return row.emitted && drawsVolumes(target, row.masks); }, ",") +
 				   joinedText(kindsBesideMethods(), "", [](const AssetKind* kind) { return "," + std::string(kind->name); }));
 }
 

@@ -3,6 +3,7 @@
 // E. Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
 #include "bake/surface_samples.h"
 
+#include "core/lists.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/work_units.h"
@@ -125,13 +126,7 @@ void takeValues(std::span<SurfaceSample> samples, std::span<const ReferenceValue
 
 std::vector<double> areasOf(const Level& level)
 {
-	std::vector<double> areas;
-	areas.reserve(level.triangles.size());
-	for (std::size_t t = 0; t < level.triangles.size(); ++t)
-	{
-		areas.push_back(0.5 * glm::length(twiceAreaOf(level, t)));
-	}
-	return areas;
+	return listOf(level.triangles.size(), [&](std::size_t t) { return 0.5 * glm::length(twiceAreaOf(level, t)); });
 }
 
 std::vector<std::size_t> samplesOfTriangles(std::span<const double> areas, std::size_t count)

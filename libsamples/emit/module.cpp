@@ -642,7 +642,18 @@ std::string toHlsl(const std::string& module)
 		text += withWholeComparisons(code, vectors);
 		at = end;
 	}
-	text = renamed(text, {{"bitCount", "countbits"}, {"line", "one_line"}, {"point", "one_point"}}); // `line`, `point`: reserved
+	text = renamed(text, {{"bitCount", "countbits"},
+						  {"floatBitsToUint", "asuint"},
+						  {"uintBitsToFloat", "asfloat"},
+						  {"mat4", "float4x4"},
+						  {"line", "one_line"}, // reserved, as is `point`
+						  {"point", "one_point"}});
+	for (const auto& [pattern, by] : {std::pair{R"(\btexelFetch\((\w+), (.*), 0\))", "$1.Load(ivec3($2, 0))"},
+									  std::pair{R"(\bconst (\w+ \w+\[\d+\]) = \w+\[\d+\]\(([^;]*)\);)", "static const $1 = {$2};"},
+									  std::pair{R"(\bnook\.clip \* ([^;]+);)", "mul(nook.clip, $1);"}})
+	{
+		text = std::regex_replace(text, std::regex(pattern), by);
+	}
 	for (const auto& [type, name] : {std::pair{"ivec", "int"}, std::pair{"uvec", "uint"}, std::pair{"vec", "float"}})
 	{
 		text = std::regex_replace(text, std::regex(std::string(R"(\b)") + type + R"(([234])\b)"), std::string(name) + "$1");
@@ -653,75 +664,72 @@ std::string toHlsl(const std::string& module)
 namespace
 {
 
-constexpr const char* kStages = R"(//
+// $1 to $4: the stages, corners and polygons, the clusters, the draw calls.
+constexpr const char* kVolumesHead = R"(//
 // Draws the static ambient occlusion volumes of a file that `nook volumes` wrote over the depth and normals of a frame: visibility of
-// static surfaces, 1 where open. Four stages are in this one file. It has no #version: include it after yours, and define one of these
-// first:
-//   #define NOOK_VERTEX    vertex stage of the volumes; with NOOK_PRISMS for files of --layout prisms
-//   #define NOOK_FRAGMENT  fragment stage of the volumes; one depth read per fragment
-//   #define NOOK_RESOLVE   fragment stage over the picture, from the sums of the volumes to visibility; no depth reads
-//   #define NOOK_SPARSE    only where Camera::every is above 1: fragment stage over the whole picture, which interpolates the visibility
-//                          of the drawn pixels, nook_cells, and discards pixels for which they are no good; at most 51 depth reads
-// Each stage has its main(). nook_volumes.h reads the file, nook_volumes_draw.h fills the uniform block and the clusters of a frame.
-// Both headers come with nook, are MIT, and have no dependencies.
-//
-// Once: nook_volumes::Volumes::open. Upload corners() and polygons(): )";
-
-std::string onceText(GlslTarget target)
-{
-	const bool textures = target == GlslTarget::gl330 || target == GlslTarget::es300;
-	const std::string buffer = target == GlslTarget::gl330 ? "buffer texture" : textures ? "texture" : "storage buffer";
-	return buffer + "s nook_corners" + (textures ? " (RGBA16UI)" : "") + " and\n// nook_polygons" + (textures ? " (RG32UI)" : "") +
-		   (target == GlslTarget::es300 ? ", two-dimensional, of any width, filled row by row" : "") +
-		   ". With prisms, vertices() as well, as the attribute nook_point (location 1, four\n"
-		   "// GL_UNSIGNED_SHORT, 8 bytes apart), and indices() as elements (GL_UNSIGNED_SHORT).\n"
-		   "// Every frame: nook_volumes::Frame::set; its block is the uniform block NookVolumes; Frame::seen of every cluster "
-		   "makes the\n"
-		   "// " +
-		   buffer + " nook_clusters" + (textures ? " (RGBA32UI, four texels a cluster)" : "") + ".\n";
-}
-
-constexpr const char* kDrawing = R"(//
-// Drawing, for each cluster i with Frame::inSight:
-//   glVertexAttribI1i(0, i);
-//   glDrawArrays(GL_TRIANGLES, 12 * first_corner, 12 * corner_count); // or, with prisms:
-//   glDrawElementsBaseVertex(GL_TRIANGLES, index_count, GL_UNSIGNED_SHORT, 2 * first_index, first_vertex);
-// or all in one call of glMultiDrawArraysIndirect (OpenGL 4.3), where nook_cluster (location 0) is an attribute with divisor 1 of the
-// numbers 0, 1, 2 ..., and i the base instance.
-// To pass the number of the cluster in another way, define NOOK_CLUSTER first: as a uniform of yours, gl_DrawID, or where the base
-// instance is i, gl_InstanceIndex (Vulkan).
+// static surfaces, 1 where open. Stages: $1.
+// Once: nook_volumes::Volumes::open (nook_volumes.h; volumes_file.js of the npm package nook-ao). Upload corners() and polygons() as
+// $2 nook_corners and nook_polygons.
+// Every frame: nook_volumes::Frame::set (nook_volumes_draw.h); its block is the uniform block NookVolumes. Frame::seen of every cluster
+// makes $3 nook_clusters.
+// Draw call of each cluster i with Frame::inSight:$4
 // States: depth test against the depth buffer of the frame, no depth writes; depth clamp; front faces counter-clockwise (clockwise where
 // Frame::mirrored). Clusters that do not contain the eye: cull back faces, depth test "less or equal". Clusters that do
-// (Frame::holdsEye): cull front faces, depth test "greater or equal"; reversed depth has the opposite tests. With EXT_depth_bounds_test
-// and one call per cluster, glDepthBoundsEXT with Frame::depthBounds skips fragments of volumes that float between the eye and a surface.
-// Without depth clamp (WebGL has it as EXT_depth_clamp): define NOOK_ANY_DEPTH for the vertex stage and draw without a depth test. The
-// picture is the same, but more fragments find that they have nothing to add.
-// Fewer fragments: define NOOK_CHOOSE_FACES for the vertex stage and draw all clusters in sight twice, first with the states of clusters
-// that do not contain the eye and nook_faces = 1, then with the other states and nook_faces = 2. Each volume is then drawn by the faces,
-// front or back, that seem to cover fewer pixels without any effect; to decide, the vertex stage reads two depths per corner of the
-// polygon (NOOK_DEPTH). This is only for files with nook_volumes::kExactBounds: other volumes are cut off where they may still occlude
-// a little, and which part is lost depends on the faces.
+// (Frame::holdsEye): cull front faces, depth test "greater or equal"; reversed depth has the opposite tests. Without depth clamp set
+// NOOK_ANY_DEPTH for the vertex stage and draw without a depth test.
+// nook's page "Drawing occlusion volumes" says how NOOK_CHOOSE_FACES spares fragments, and NOOK_SPARSE draws one pixel of 9 or 25.
+// Together with a screen-space method, take min(this visibility, that one): then an occluder that both see counts once.
 )";
+constexpr const char* kMacros = R"(define one of these macros first, after your #version, for its main():
+//   NOOK_VERTEX (with NOOK_PRISMS for files of --layout prisms), NOOK_FRAGMENT: the volumes; one depth read per fragment
+//   NOOK_RESOLVE, NOOK_SPARSE: the picture; NOOK_SPARSE where one pixel of 9 or 25 was drawn, at most 51 depth reads)";
+constexpr const char* kCallsGl = R"(
+//   glVertexAttribI1i(0, i); // or NOOK_CLUSTER, defined as a uniform of yours, gl_DrawID, in Vulkan gl_InstanceIndex
+//   glDrawArrays(GL_TRIANGLES, 12 * first_corner, 12 * corner_count);
+// With prisms the attribute nook_point (location 1) is vertices(), four unsigned 16-bit integers, and the call
+//   glDrawElementsBaseVertex(GL_TRIANGLES, index_count, GL_UNSIGNED_SHORT, 2 * first_index, first_vertex);
+// All in one call: glMultiDrawArraysIndirect, where nook_cluster has divisor 1 and holds 0, 1, 2 ..., and i is the base instance.)";
+constexpr const char* kCallsHlsl = R"(
+//   DrawInstanced(12 * corner_count, 1, 0, i), where NOOK_CLUSTER is an attribute per instance of the numbers 0, 1, 2 ...
+// With prisms NOOK_POINT is vertices(), R16G16B16A16_UINT, and the call
+//   DrawIndexedInstanced(index_count, 1, first_index, first_vertex, i))";
+constexpr const char* kCallsWgsl = R"(
+//   draw(12 * corner_count, 1, 12 * first_corner, i)
+// With prisms the attribute 0 is vertices(), uint16x4, and the call
+//   drawIndexed(index_count, 1, first_index, first_vertex, i)
+// nook_faces is 0 unless faces are chosen. NOOK_ANY_DEPTH is the constant nook_any_depth.)";
 
 constexpr const char* kSums =
-	R"(// Target: R16F (or R32F; R8 would saturate at 1), cleared to 0, blended with GL_ONE, GL_ONE. The resolve stage reads it as nook_sums.
+	R"(// Target: R16F (or R32F; R8 would saturate at 1), cleared to 0; blending adds. The resolve stage reads it as nook_sums.
 )";
 constexpr const char* kBits =
 	R"(// Target: unsigned integers, R32UI, RG32UI or RGBA32UI for up to 32, 64 and 128 directions, a second RGBA32UI for more; cleared to 0;
-// no blending, but glEnable(GL_COLOR_LOGIC_OP), glLogicOp(GL_OR). The resolve stage reads them as nook_sums and nook_more_sums.
-// Once, before the first frame: draw a triangle over a texture RGBA32UI of 64 x 64 texels, 64 x 128 above 128 directions, with a
-// fragment stage that defines NOOK_HALF_SPACES. The fragment stage of the volumes reads it as nook_half_spaces.
+// no blending, but the logic operation OR (GL_COLOR_LOGIC_OP). The resolve stage reads them as nook_sums and nook_more_sums.
+// Once, before the first frame: draw a triangle over a texture RGBA32UI of 64 x 64 texels, 64 x 128 above 128 directions, with the
+// stage NOOK_HALF_SPACES. The fragment stage of the volumes reads it as nook_half_spaces.
 )";
-constexpr const char* kRest =
-	R"(// With Camera::every above 1 only one pixel of every x every is drawn: the target has ceil(width / every) columns and
-// ceil(height / every) rows, and its depth buffer holds the depths of those pixels. nook_depths and nook_normals always are those of the
-// whole picture. After NOOK_RESOLVE, fill the whole picture, whose target has a stencil buffer:
-//   1. Clear the stencil to 0. Draw NOOK_SPARSE with the same block; it sets the stencil to 1 where it draws (GL_ALWAYS, GL_REPLACE).
-//   2. It discards about a tenth of the pixels: thin objects, edges, sharp creases. Draw these where the stencil is 0 (GL_EQUAL,
-//      GL_KEEP): the volumes into a target of the size of the picture, with the block of a Frame whose Camera::every is 1
-//      (nook_clusters stays as it is), then NOOK_RESOLVE into the picture of step 1.
-// Together with a screen-space method, take min(this visibility, that one): then an occluder that both see counts once.
-)";
+
+std::string volumesHead(const AovTextSettings& settings)
+{
+	const GlslTarget target = settings.target;
+	const bool wgsl = target == GlslTarget::wgsl;
+	const std::string buffers = target == GlslTarget::gl330   ? "buffer textures"
+								: target == GlslTarget::es300 ? "textures of any width, filled row by row,"
+															  : "";
+	const std::string stages =
+		wgsl ? "nook_vertex (nook_prism_vertex for files of\n// --layout prisms) and nook_fragment draw volumes, nook_triangle and "
+			   "nook_resolve or nook_sparse the picture"
+			 : kMacros;
+	const std::string once = buffers.empty() ? "storage buffers" : buffers + " RGBA16UI and RG32UI,";
+	const std::string frame = buffers.empty() ? "the storage buffer" : buffers + " RGBA32UI, four texels a cluster,";
+	const char* const calls = wgsl ? kCallsWgsl : target == GlslTarget::hlsl60 ? kCallsHlsl : kCallsGl;
+	std::string text = kVolumesHead;
+	for (const auto& [mark, by] : {std::pair{"\\$1", stages}, {"\\$2", once}, {"\\$3", frame}, {"\\$4", std::string(calls)}})
+	{
+		text = std::regex_replace(text, std::regex(mark), by);
+	}
+	return text + (settings.directions > 0 ? kBits : kSums);
+}
 
 } // namespace
 
@@ -729,8 +737,11 @@ std::string volumesGlsl(const AovTextSettings& settings, const EmitContext& cont
 {
 	ModuleSettings module;
 	module.target = settings.target;
-	return commentBlock(notesOf(context, {}), "// ") + kStages + onceText(settings.target) + kDrawing +
-		   (settings.directions > 0 ? kBits : kSums) + kRest + headOf(module) + aovText(settings);
+	const std::string text = headOf(module) + aovText(settings);
+	return commentBlock(notesOf(context, {}), "// ") + volumesHead(settings) +
+		   (settings.target == GlslTarget::wgsl ? volumesWgsl(text)
+			: isHlsl(module)                    ? toHlsl(text)
+												: text);
 }
 
 } // namespace nook

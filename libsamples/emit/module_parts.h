@@ -88,7 +88,8 @@ std::string toHlsl(const std::string& module);
 // The module in WGSL, with its bindings in one place, and with an entry point per pass if it is a complete shader. Throws Error
 // (unsupported) for GLSL that is not translated.
 std::string moduleWgsl(const ModuleSettings& settings, const EmitContext& context);
-std::string wgslOf(const std::string& glsl); // of functions for Vulkan
+std::string wgslOf(const std::string& glsl);      // of functions for Vulkan
+std::string volumesWgsl(const std::string& glsl); // of aovText
 
 // The file's introduction: its functions and the passes to draw.
 std::string introductionOf(const ModuleSettings& settings);

@@ -19,19 +19,17 @@ namespace nook
 namespace
 {
 
-// Names that GLSL leaves free and WGSL reserves, and functions that the translation calls.
+// Names that GLSL leaves free and WGSL reserves, and functions that the translation calls. Kernels compile as C++, so the keywords
+// of that language, which WGSL reserves as well, do not occur.
 constexpr std::string_view kReserved =
 	" alias case const_assert continuing default diagnostic enable fn let loop override requires var NULL Self abstract active "
-	"alignas alignof as asm asm_fragment async attribute auto await become cast catch class co_await co_return co_yield coherent "
-	"column_major common compile compile_fragment concept const_cast consteval constexpr constinit crate debugger decltype delete "
-	"demote demote_to_helper dynamic_cast enum explicit export extends extern external fallthrough filter final finally friend "
-	"from fxgroup get goto groupshared highp impl implements import inline instanceof interface layout lowp macro macro_rules "
-	"match mediump meta mod module move mut mutable namespace new nil noexcept noinline nointerpolation non_coherent noncoherent "
-	"noperspective null nullptr of operator package packoffset partial pass patch pixelfragment precise precision premerge priv "
-	"protected pub public readonly ref regardless register reinterpret_cast require resource restrict self set shared sizeof "
-	"smooth snorm static static_assert static_cast std subroutine super target template this thread_local throw trait try type "
-	"typedef typeid typename typeof union unless unorm unsafe unsized use using varying virtual volatile wgsl where with "
-	"writeonly yield select all any textureLoad countOneBits ";
+	"as asm_fragment async attribute await become cast coherent column_major common compile compile_fragment crate debugger "
+	"demote demote_to_helper extends external fallthrough filter final finally from fxgroup get groupshared highp impl "
+	"implements import instanceof interface layout lowp macro macro_rules match mediump meta mod module move mut nil noinline "
+	"nointerpolation non_coherent noncoherent noperspective null of package packoffset partial pass patch pixelfragment precise "
+	"precision premerge priv pub readonly ref regardless require resource restrict self set shared sizeof smooth snorm std "
+	"subroutine super target trait type typeof unless unorm unsafe unsized use varying wgsl where with writeonly yield select "
+	"all any textureLoad countOneBits ";
 
 // Functions of both languages whose result has the type of their arguments.
 constexpr std::string_view kFunctions =
@@ -99,7 +97,7 @@ std::string typeNamed(const std::string& glsl)
 	std::smatch match;
 	if (!std::regex_match(glsl, match, pattern))
 	{
-		return {};
+		return glsl == "mat4" ? "mat4x4f" : "";
 	}
 	const std::string scalar = match[1].matched ? "f32" : match[2].matched ? "i32" : match[3].matched ? "u32" : "bool";
 	return vectorOf(scalar, glsl.find("vec") < glsl.size() ? glsl.back() - '0' : 1);
@@ -137,8 +135,8 @@ std::string withoutVulkan(std::string glsl, bool complete)
 	return glsl;
 }
 
-// A module without its directives, and with its macros replaced. No macro is defined in front of it, so #ifndef always holds, and
-// #if rejects old versions of GLSL.
+// A module without its directives, and with its macros replaced. No macro is defined in front of it, so #ifndef always holds;
+// #ifdef is around parts that are there, and #if rejects old versions of GLSL.
 std::string preprocessed(const std::string& glsl)
 {
 	static const std::regex define(R"(#define (\w+)(\((\w+)\))? ?(.*?)( *//.*)?)");
@@ -158,9 +156,9 @@ std::string preprocessed(const std::string& glsl)
 			line = constant ? "const float " + match.str(1) + " = " + value + ";" : "";
 			macros.resize(macros.size() - (constant ? 1 : 0));
 		}
-		else if (line.starts_with("#") && !isAmong(" #if #ifndef #endif #error ", line.substr(0, line.find(' '))))
+		else if (line.starts_with("#") && !isAmong(" #if #ifdef #ifndef #endif #error ", line.substr(0, line.find(' '))))
 		{
-			refuseGlsl("the module", "'" + line + "'", "#ifndef, #define or #endif");
+			refuseGlsl("the module", "'" + line + "'", "#ifdef, #ifndef, #define or #endif");
 		}
 		for (const auto& [name, value] : macros)
 		{
@@ -325,9 +323,13 @@ private:
 			return declareBound(start);
 		}
 		const bool constant = take("const");
-		const std::string of = type();
+		const std::string of = take("void") ? "" : type();
 		const std::string called = name();
 		m_text += "\n";
+		if (take(";"))
+		{
+			return write(m_text, start, "var<private> " + declared(called, of) + ": " + of + ";");
+		}
 		if (!constant)
 		{
 			m_where = called;
@@ -366,13 +368,25 @@ private:
 			const std::string key = name();
 			layout[key] = take("=") ? next() : "";
 		}
-		expect("uniform");
+		const std::string at = "@group(" + layout["set"] + ") @binding(" + layout["binding"] + ") var";
+		const bool stored = take("readonly");
+		expect(stored ? "buffer" : "uniform");
 		take("highp");
 		const std::string kind = name();
-		const std::string at = "@group(" + layout["set"] + ") @binding(" + layout["binding"] + ") var";
 		static const std::regex sampler("([iu]?)sampler2D(Array)?");
 		std::smatch parts;
-		if (peek() == "{")
+		if (stored)
+		{
+			expect("{");
+			const std::string of = type();
+			const std::string called = declared(name(), "array " + of);
+			for (const char* const mark : {"[", "]", ";", "}"})
+			{
+				expect(mark);
+			}
+			write(m_bindings, start, ended(at + "<storage, read> " + called + ": array<" + of + ">", ";"));
+		}
+		else if (peek() == "{")
 		{
 			m_text += "\n";
 			write(m_text, start, "struct " + kind + "\n{");
@@ -381,9 +395,12 @@ private:
 				start = m_at;
 				const std::string of = type();
 				const std::string member = name();
-				expect(";"); // an array would have another stride in std140
-				m_members[member] = of;
-				write(m_text, start, "\t" + safe(member) + ": " + of + ",");
+				const bool array = of == "vec4f" && take("["); // others have another stride in std140
+				const std::string size = array ? next() : "";
+				expect(array ? "]" : ";");
+				take(";");
+				m_members[member] = (array ? "array " : "") + of;
+				write(m_text, start, "\t" + safe(member) + ": " + (array ? "array<" + of + ", " + size + ">" : of) + ",");
 			}
 			m_block = kind;
 			m_text += "}\n";
@@ -437,7 +454,7 @@ private:
 			body = std::regex_replace(body, std::regex(R"(\blet )" + variable + ":"), "var " + variable + ":");
 		}
 		const std::size_t end = std::exchange(m_at, head);
-		write(m_text, start, "fn " + called + "(" + parameters + ") -> " + result);
+		write(m_text, start, "fn " + called + "(" + parameters + ")" + (result.empty() ? "" : " -> ") + result);
 		m_at = end;
 		m_text += body;
 	}
@@ -482,7 +499,7 @@ private:
 			}
 			return;
 		}
-		const WgslValue value = take("return")                              ? expression(m_result)
+		const WgslValue value = take("return") ? (m_result.empty() ? WgslValue{} : expression(m_result))
 								: isAmong(" break continue discard ", word) ? WgslValue{next()}
 																			: WgslValue{simple()};
 		expect(";");
@@ -506,8 +523,13 @@ private:
 			return "let " + declared(called, of) + ": " + of + value;
 		}
 		const std::string step = isAmong(" ++ -- ", peek()) ? next() : "";
-		m_assigned.insert(safe(peek()));
+		const std::string assigned = safe(peek());
 		const WgslValue left = unary();
+		if (step.empty() && left.type.empty())
+		{
+			return left.text; // a call
+		}
+		m_assigned.insert(assigned);
 		const std::string op = step.empty() ? next() : step;
 		if (isAmong(" ++ -- ", op))
 		{
@@ -571,6 +593,11 @@ private:
 			{
 				right = {"u32(" + right.text + ")", scalarOf(left.type)}; // amounts are unsigned in WGSL
 			}
+			if (op == "*" && left.type == "mat4x4f" && right.type == "vec4f")
+			{
+				left = {operand(left, rank, false) + " * " + operand(right, rank, true), "vec4f", rank};
+				continue;
+			}
 			const bool scales = rank >= kSum && (sizeOf(left.type) == 1 || sizeOf(right.type) == 1);
 			if (scales ? scalarOf(left.type) != scalarOf(right.type) : left.type != right.type)
 			{
@@ -594,8 +621,14 @@ private:
 			return {op + (value.rank < kWhole ? "(" + value.text + ")" : value.text), value.type, kUnary};
 		}
 		WgslValue value = primary();
-		while (take("."))
+		while (peek() == "." || peek() == "[")
 		{
+			if (next() == "[")
+			{
+				const std::string of = value.type.starts_with("array ") ? value.type.substr(6) : scalarOf(value.type);
+				value = {operand(value, kUnary, false) + "[" + ended(expression("i32").text, "]"), of};
+				continue;
+			}
 			const std::string member = name();
 			const bool own = value.type == m_block && m_members.contains(member);
 			if (!own && member.find_first_not_of("xyzw") < member.size() && member.find_first_not_of("rgba") < member.size())
@@ -632,13 +665,7 @@ private:
 		{
 			refuse(word, "a value");
 		}
-		const std::string type = found->second;
-		if (!type.starts_with("array "))
-		{
-			return {safe(word), type};
-		}
-		expect("[");
-		return {safe(word) + "[" + ended(expression("i32").text, "]"), type.substr(6)};
+		return {safe(word), found->second};
 	}
 
 	WgslValue called(const std::string& word)
@@ -683,6 +710,11 @@ private:
 			m_turns = true;
 			return {"nookSin(" + all + (word == "cos" ? " + 1.57079633f)" : ")"), "f32"};
 		}
+		if (types.size() == 1 && (word == "uintBitsToFloat" || word == "floatBitsToUint"))
+		{
+			const std::string of = vectorOf(word[0] == 'u' ? "f32" : "u32", sizeOf(types[0]));
+			return {"bitcast<" + of + ">(" + all + ")", of};
+		}
 		if (alike && word == "bitCount" && types[0] == "u32")
 		{
 			return {"i32(countOneBits(" + all + "))", "i32"};
@@ -706,6 +738,67 @@ private:
 	std::set<std::string> m_assigned;                            // names to which it assigns
 };
 
+constexpr const char* kVolumesEntries = R"(
+// 1: neither the near nor the far plane cuts volumes. Draw without a depth test then, where the device has no depth-clip-control.
+override nook_any_depth: f32 = 0.0;
+
+struct NookBetween
+{
+	@builtin(position) position: vec4f,
+	@location(0) @interpolate(flat) polygon: vec4i,
+	@location(1) @interpolate(flat) front: vec4f,
+	@location(2) @interpolate(flat) offset: vec3f,
+	@location(3) @interpolate(flat) step: vec3f,
+}
+
+fn nookBetween(position: vec4f) -> NookBetween
+{
+	let place = vec4f(position.xy, select(position.z, 0.0, nook_any_depth > 0.5), position.w);
+	return NookBetween(place, nook_polygon, nook_front, nook_offset, nook_step);
+}
+
+@vertex
+fn nook_vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) cluster: u32) -> NookBetween
+{
+	return nookBetween(nookPolygonVertex(i32(cluster), i32(vertex)));
+}
+
+@vertex
+fn nook_prism_vertex(@location(0) point: vec4u, @builtin(instance_index) cluster: u32) -> NookBetween
+{
+	return nookBetween(nookPrismVertex(i32(cluster), point));
+}
+
+@fragment
+fn nook_fragment(between: NookBetween) -> @location(0) vec4f
+{
+	nook_polygon = between.polygon;
+	nook_front = between.front;
+	nook_offset = between.offset;
+	nook_step = between.step;
+	return vec4f(nookOcclusion(vec2i(between.position.xy) * nook.cell), 0.0, 0.0, 1.0);
+}
+
+@fragment
+fn nook_resolve(@builtin(position) place: vec4f) -> @location(0) vec4f
+{
+	return vec4f(nookResolved(vec2i(place.xy)), 0.0, 0.0, 1.0);
+}
+
+@fragment
+fn nook_sparse(@builtin(position) place: vec4f) -> @location(0) vec4f
+{
+	return vec4f(nookKnown(vec2i(place.xy)), 0.0, 0.0, 1.0);
+}
+)";
+
+std::string triangleText(const std::string& name)
+{
+	return "\n// The vertices of a triangle that covers the picture: draw three.\n@vertex\nfn " + name +
+		   "(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f\n{\n"
+		   "\treturn vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);\n}\n";
+}
+
 // An entry point per pass, since WGSL has no macros to choose one: main, or main_nookVoLineLinked and so on.
 std::string entriesText(const ModuleSettings& settings)
 {
@@ -713,14 +806,8 @@ std::string entriesText(const ModuleSettings& settings)
 															{"rgba8", "rgba8unorm"},    {"rgba16f", "rgba16float"},
 															{"rgba32f", "rgba32float"}, {"rgba32ui", "rgba32uint"}};
 	const bool compute = settings.main == ModuleMain::compute;
-	std::string text = compute ? "\n// Dispatch as many groups of 8 x 8 as cover the picture that is written.\n" : R"(
-// The vertices of a triangle that covers the picture: draw three.
-@vertex
-fn triangle(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f
-{
-	return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-)";
+	std::string text =
+		compute ? "\n// Dispatch as many groups of 8 x 8 as cover the picture that is written.\n" : triangleText("triangle");
 	const std::vector<ModulePass> passes = mainPasses(settings);
 	for (const ModulePass& pass : passes)
 	{
@@ -743,6 +830,19 @@ fn triangle(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f
 std::string wgslOf(const std::string& glsl)
 {
 	return WgslWriter(glsl).module();
+}
+
+std::string volumesWgsl(const std::string& glsl)
+{
+	std::string once; // stages repeat what they share, between empty lines
+	std::set<std::string> parts;
+	for (std::size_t at = 0, end = 0; at < glsl.size(); at = end + 2)
+	{
+		end = std::min(glsl.find("\n\n", at), glsl.size());
+		const std::string part = glsl.substr(at, end - at);
+		once += parts.insert(part).second ? part + "\n\n" : "";
+	}
+	return wgslOf(once) + kVolumesEntries + triangleText("nook_triangle");
 }
 
 std::string moduleWgsl(const ModuleSettings& settings, const EmitContext& context)

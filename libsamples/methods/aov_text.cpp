@@ -5,7 +5,10 @@
 #include "methods/assets.h"
 #include "methods/kernel_text.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
+#include <regex>
 #include <string_view>
 #include <vector>
 
@@ -14,14 +17,7 @@ namespace nook
 namespace
 {
 
-constexpr const char* kBlock = R"(#ifndef NOOK_SKY
-#define NOOK_SKY 1e30
-#endif
-
-// The uniform block, nook_volumes::Block of nook_volumes_draw.h, which Frame::set fills.
-NOOK_AT_BLOCKuniform NookVolumes
-{
-	vec2 size; // width, height in pixels
+constexpr const char* kBlockMembers = R"(	vec2 size; // width, height in pixels
 	vec2 pixel_size;
 	vec2 across_x; // turns NDC x back into view-space x: 1 / P[0][0], P[2][0] / P[0][0] of the projection P[column][row]
 	vec2 across_y; // the same for y; the first is negated where row 0 of the pixels lies at NDC y = -1
@@ -45,8 +41,80 @@ NOOK_AT_BLOCKuniform NookVolumes
 	float plane_bias;   // a receiver closer to the plane of a polygon than this is not occluded by it, metres
 	float exact_bounds; // 1: volumes have their exact bounds, 0: their corners are limited in length
 	float sum_range;    // summed occlusion at the last knot of the curve
-} nook;
 )";
+
+bool hasNumbers(GlslTarget target) // of resources
+{
+	return target != GlslTarget::gl330 && target != GlslTarget::es300;
+}
+
+std::string definition(const std::string& macro, int number)
+{
+	return "#ifndef " + macro + "\n#define " + macro + " " + std::to_string(number) + "\n#endif\n";
+}
+
+std::string blockText(GlslTarget target)
+{
+	const std::string head = "\n// The uniform block, nook_volumes::Block of nook_volumes_draw.h, which Frame::set fills.\n";
+	const std::string macro = "NOOK_BLOCK_BINDING";
+	const std::string text =
+		"#ifndef NOOK_SKY\n#define NOOK_SKY 1e30\n#endif\n" + (hasNumbers(target) ? definition(macro, 0) : "") + head;
+	if (target == GlslTarget::hlsl60)
+	{
+		return text + "struct NookVolumesMembers\n{\n" + kBlockMembers + "};\nNOOK_AT(" + macro +
+			   ") cbuffer NookVolumes NOOK_REGISTER(b, " + macro + ")\n{\n\tNookVolumesMembers nook;\n};\n";
+	}
+	const std::string set = target == GlslTarget::gl430 || !hasNumbers(target) ? "" : "set = NOOK_SET, ";
+	return text + "layout(" + set + "std140" + (hasNumbers(target) ? ", binding = " + macro : "") + ") uniform NookVolumes\n{\n" +
+		   kBlockMembers + "} nook;\n";
+}
+
+// What stages read; their text has "NOOK_NEEDS nook_depths;". Numbers of textures match the modules of screen-space methods.
+struct Resource
+{
+	const char* type; // in GLSL; uvec2, uvec4: elements of a storage buffer
+	const char* name;
+	int number; // in OpenGL 4.3, which counts each kind on its own
+	int vulkan; // in Vulkan, HLSL and WGSL
+};
+constexpr std::array kResources{
+	Resource{"int", "nook_faces", 0, 16},        Resource{"sampler2D", "nook_depths", 1, 1},
+	Resource{"sampler2D", "nook_normals", 2, 2}, Resource{"uvec2", "nook_corners", 0, 3},
+	Resource{"uvec2", "nook_polygons", 1, 4},    Resource{"uvec4", "nook_clusters", 2, 5},
+	Resource{"sampler2D", "nook_cells", 6, 6},   Resource{"usampler2D", "nook_half_spaces", 10, 10},
+	Resource{"sampler2D", "nook_sums", 13, 13},  Resource{"sampler2D", "nook_more_sums", 14, 14},
+};
+
+std::string declarationOf(const Resource& resource, const std::string& type, GlslTarget target)
+{
+	const std::string name = resource.name;
+	const std::string declared = "uniform " + type + " " + name + ";";
+	if (!hasNumbers(target))
+	{
+		return declared;
+	}
+	const bool number = type == "int";
+	const bool buffer = type.starts_with("uvec");
+	std::string macro = name + (number ? "_LOCATION" : "_BINDING");
+	std::transform(macro.begin(), macro.end(), macro.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+	const std::string defined = definition(macro, target == GlslTarget::gl430 ? resource.number : resource.vulkan);
+	if (target == GlslTarget::hlsl60)
+	{
+		const std::string kind = buffer ? "StructuredBuffer<" + type : type[0] == 'u' ? "Texture2D<uvec4" : "Texture2D<vec4";
+		return number ? "#ifdef NOOK_VULKAN\n" + defined + "#endif\n" + definition(macro, 1) + "NOOK_AT(" + macro +
+							") cbuffer NookFaces NOOK_REGISTER(b, " + macro + ")\n{\n\tint nook_faces;\n};"
+					  : defined + "NOOK_AT(" + macro + ") " + kind + "> " + name + " NOOK_REGISTER(t, " + macro + ");";
+	}
+	if (number && target == GlslTarget::vulkan)
+	{
+		return "layout(push_constant) uniform NookFaces\n{\n\tint nook_faces;\n};";
+	}
+	const std::string layout = std::string("layout(") + (target == GlslTarget::gl430 ? "" : "set = NOOK_SET, ") +
+							   (buffer ? "std430, " : "") + (number && target == GlslTarget::gl430 ? "location = " : "binding = ") +
+							   macro + ") ";
+	const std::string block = std::string("Nook") + static_cast<char>(std::toupper(name[5])) + name.substr(6);
+	return defined + layout + (buffer ? "readonly buffer " + block + "\n{\n\t" + type + " " + name + "[];\n};" : declared);
+}
 
 constexpr const char* kBuffers330 = R"(
 // Buffer textures: corners (RGBA16UI) and polygons (RG32UI) of the file, and the clusters of this frame (RGBA32UI).
@@ -68,45 +136,20 @@ uvec4 nookSeenCluster(int i, int texel)
 }
 )";
 
-constexpr const char* kBuffersEs300 = R"(
-// Textures of any width, filled row by row: corners (RGBA16UI) and polygons (RG32UI) of the file, and the clusters of this frame
-// (RGBA32UI).
-uniform highp usampler2D nook_corners;
-uniform highp usampler2D nook_polygons;
-uniform highp usampler2D nook_clusters;
-
+// ES 3.00 has no buffer textures.
+constexpr const char* kTexel = R"(
+// Textures of any width, filled row by row, take the place of buffers.
 ivec2 nookTexel(int i, ivec2 size)
 {
 	return ivec2(i % size.x, i / size.x);
-}
-uvec4 nookPackedCorner(int i)
-{
-	return texelFetch(nook_corners, nookTexel(i, textureSize(nook_corners, 0)), 0);
-}
-uvec2 nookPackedPolygon(int i)
-{
-	return texelFetch(nook_polygons, nookTexel(i, textureSize(nook_polygons, 0)), 0).xy;
-}
-uvec4 nookSeenCluster(int i, int texel)
-{
-	return texelFetch(nook_clusters, nookTexel(4 * i + texel, textureSize(nook_clusters, 0)), 0);
 }
 )";
 
 constexpr const char* kStorage = R"(
 // Storage buffers: corners and polygons of the file, and the clusters of this frame.
-NOOK_AT_CORNERSreadonly buffer NookCorners
-{
-	uvec2 nook_corners[];
-};
-NOOK_AT_POLYGONSreadonly buffer NookPolygons
-{
-	uvec2 nook_polygons[];
-};
-NOOK_AT_CLUSTERSreadonly buffer NookClusters
-{
-	uvec4 nook_clusters[];
-};
+NOOK_NEEDS nook_corners;
+NOOK_NEEDS nook_polygons;
+NOOK_NEEDS nook_clusters;
 
 uvec4 nookPackedCorner(int i)
 {
@@ -147,26 +190,43 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
 	return text;
 }
 
-// way: in or out.
+constexpr const char* kBetweenHlsl = R"(
+struct NookBetween
+{
+	vec4 position : SV_Position;
+	nointerpolation ivec4 polygon : NOOK_POLYGON; // first corner, number of corners, 1 where it occludes on both sides, extent (nookShare)
+	nointerpolation vec4 front : NOOK_FRONT;      // unit normal of its front, alpha
+	nointerpolation vec3 offset : NOOK_OFFSET;    // a corner relative to the eye is nook_offset + nook_step * (stored integers)
+	nointerpolation vec3 step : NOOK_STEP;
+};
+static NookBetween nook_between;
+#define nook_polygon nook_between.polygon
+#define nook_front nook_between.front
+#define nook_offset nook_between.offset
+#define nook_step nook_between.step
+)";
+
+// way: in or out. WGSL has variables of the stage instead, which its entry points fill or pass on.
 std::string betweenText(GlslTarget target, const std::string& way)
 {
 	std::string text = kBetween;
+	if (target == GlslTarget::hlsl60)
+	{
+		return kBetweenHlsl + text.substr(text.find("\n// Extent"));
+	}
 	for (int i = 0; i < 4; ++i)
 	{
 		const std::string number = std::to_string(i);
-		text = replaced(text, "NOOK_WAY" + number,
-						(target == GlslTarget::vulkan ? "layout(location = " + number + ") " : "") + "flat " + way + " ");
+		const std::string location = target == GlslTarget::vulkan ? "layout(location = " + number + ") " : "";
+		text = replaced(text, "NOOK_WAY" + number, target == GlslTarget::wgsl ? "" : location + "flat " + way + " ");
 	}
 	return text;
 }
 
-std::string facesText(GlslTarget target)
-{
-	const bool vulkan = target == GlslTarget::vulkan;
-	return std::string("\n// 1: keeps volumes that are drawn by their front faces, 2: by their back faces, 0: keeps all.\n") +
-		   (vulkan ? "layout(push_constant) uniform NookFaces\n{\n\tint nook_faces;\n};\n"
-				   : "NOOK_AT_FACESuniform int nook_faces;\n");
-}
+constexpr const char* kFaces = R"(
+// 1: keeps volumes that are drawn by their front faces, 2: by their back faces, 0: keeps all.
+NOOK_NEEDS nook_faces;
+)";
 
 constexpr const char* kVertexMain = R"(
 #ifndef NOOK_CLUSTER // number of the cluster, the same for all its vertices
@@ -190,13 +250,31 @@ void main()
 }
 )";
 
+// Direct3D counts vertices from 0 in each draw call, whatever its first one is.
+constexpr const char* kVertexHlsl = R"(
+#ifdef NOOK_PRISMS
+NookBetween main(int cluster : NOOK_CLUSTER, uvec4 corner : NOOK_POINT) // cluster: its number, the same for all its vertices
+{
+	nook_between.position = nookPrismVertex(cluster, corner);
+#else
+NookBetween main(int cluster : NOOK_CLUSTER, uint vertex : SV_VertexID)
+{
+	nook_between.position = nookPolygonVertex(cluster, int(vertex) + 12 * int(nookSeenCluster(cluster, 1).w));
+#endif
+#ifdef NOOK_ANY_DEPTH
+	nook_between.position.z = 0.0; // neither the near nor the far plane cuts it
+#endif
+	return nook_between;
+}
+)";
+
 constexpr const char* kDepthInput = R"(
 #ifndef NOOK_DEPTH // NOOK_MEANS
-NOOK_AT_DEPTHSuniform sampler2D nook_depths;
+NOOK_NEEDS nook_depths;
 #define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
 #endif
 #ifndef NOOK_NORMAL // unit normal in view space: x to the right, y up, z toward the camera
-NOOK_AT_NORMALSuniform sampler2D nook_normals;
+NOOK_NEEDS nook_normals;
 #define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
 #endif
 )";
@@ -227,32 +305,27 @@ float nookLeaning(ivec2 pixel, float device)
 )";
 
 constexpr const char* kReceiver = R"(
-vec3 nook_base;  // nook_offset relative to the receiver, which is the surface that the pixel shows
-float nook_bias; // metres: a receiver closer to the plane of a polygon is not occluded by it
-vec3 nookCorner(int i);
-)";
+NOOK_STATICvec3 nook_base;  // nook_offset relative to the receiver, which is the surface that the pixel shows
+NOOK_STATICfloat nook_bias; // metres: a receiver closer to the plane of a polygon is not occluded by it
 
-constexpr const char* kFragmentMain = R"(
-layout(location = 0) out float nook_occlusion;
-
-void main()
+// Corner i of the polygon relative to the receiver.
+vec3 nookCorner(int i)
 {
-	nook_occlusion = nookOcclusion(ivec2(gl_FragCoord.xy) * nook.cell);
+	return nook_base + nook_step * vec3(nookPackedCorner(nook_polygon.x + i).xyz);
 }
 )";
 
-constexpr const char* kResolveMain = R"(
-NOOK_AT_SUMSuniform sampler2D nook_sums; // the picture of the fragment stage
-layout(location = 0) out float nook_visibility;
+constexpr const char* kResolved = R"(
+NOOK_NEEDS nook_sums; // the picture of the fragment stage
 
-void main()
+float nookResolved(ivec2 cell)
 {
-	nook_visibility = 1.0 - nookCompensated(texelFetch(nook_sums, ivec2(gl_FragCoord.xy), 0).r);
+	return 1.0 - nookCompensated(texelFetch(nook_sums, cell, 0).r);
 }
 )";
 
 constexpr const char* kSparseInput = R"(
-NOOK_AT_CELLSuniform sampler2D nook_cells; // the picture of the resolve stage
+NOOK_NEEDS nook_cells; // the picture of the resolve stage
 
 float nookVisibility(ivec2 cell)
 {
@@ -261,30 +334,22 @@ float nookVisibility(ivec2 cell)
 )";
 
 constexpr const char* kSparseMain = R"(
-layout(location = 0) out float nook_visibility;
-
-void main()
+float nookKnown(ivec2 pixel)
 {
-	float visibility = nookSparse(ivec2(gl_FragCoord.xy));
+	float visibility = nookSparse(pixel);
 	if (visibility < 0.0)
 	{
 		discard; // left for a second drawing at every pixel
 	}
-	nook_visibility = visibility;
+	return visibility;
 }
 )";
 
 const KernelText& volumeKernels()
 {
 	static const KernelText text =
-		parseKernels({assets::camera_glsl, assets::depth_glsl, assets::form_factor_glsl, assets::volume_glsl, assets::mask_glsl});
-	return text;
-}
-
-const KernelText& sparseKernels()
-{
-	static const KernelText text =
-		parseKernels({assets::camera_glsl, assets::depth_glsl, assets::reconstruct_glsl, assets::aov_sparse_glsl});
+		parseKernels({assets::camera_glsl, assets::depth_glsl, assets::form_factor_glsl, assets::volume_glsl, assets::mask_glsl,
+					  assets::reconstruct_glsl, assets::aov_sparse_glsl});
 	return text;
 }
 
@@ -294,27 +359,12 @@ std::string stageText(std::string_view text)
 	return "\n" + std::string(text.substr(text.find('\n') + 1));
 }
 
-bool hasFma(GlslTarget target)
+// target: of functions with products that are rounded once.
+std::string functionOf(FunctionWriter& writer, const char* entry, GlslTarget target = GlslTarget::gl330)
 {
-	return target == GlslTarget::gl430 || target == GlslTarget::vulkan;
+	const bool fma = target == GlslTarget::gl430 || target == GlslTarget::vulkan;
+	return writer.add(entry, {{"NOOK_CELL", "nook.cell"}, {"NOOK_NATIVE_FMA", fma ? "1" : "0"}});
 }
-
-// One stage's functions, each once.
-class Functions
-{
-public:
-	// has_fma: is fma() part of the language, and does it round once?
-	explicit Functions(const KernelText& kernels, bool has_fma = false) : m_writer(kernels), m_has_fma(has_fma) {}
-
-	std::string of(const char* entry)
-	{
-		return m_writer.add(entry, {{"NOOK_CELL", "nook.cell"}, {"NOOK_NATIVE_FMA", m_has_fma ? "1" : "0"}});
-	}
-
-private:
-	FunctionWriter m_writer;
-	bool m_has_fma;
-};
 
 std::string inputs(const AovTextSettings& settings)
 {
@@ -326,12 +376,6 @@ std::string inputs(const AovTextSettings& settings)
 		   replaced(kInputs, "NOOK_DEPTH_HERE", here);
 }
 
-// Shortest decimal that reads back as the same number.
-std::string numberOf(float value)
-{
-	return shortestScientific(value);
-}
-
 // The constants of "nook_rays".
 std::string raysText(int count)
 {
@@ -341,13 +385,14 @@ std::string raysText(int count)
 	for (std::size_t i = 0; i < rays.size(); ++i)
 	{
 		const glm::vec3& ray = rays[i];
-		text += (i == 0 ? "\n\tvec3(" : ",\n\tvec3(") + numberOf(ray.x) + ", " + numberOf(ray.y) + ", " + numberOf(ray.z) + ")";
+		text += (i == 0 ? "\n\tvec3(" : ",\n\tvec3(") + shortestScientific(ray.x) + ", " + shortestScientific(ray.y) + ", " +
+				shortestScientific(ray.z) + ")";
 	}
 	return text + ");\nvec3 nookRay(int i)\n{\n\treturn nook_rays[i];\n}\n";
 }
 
 constexpr const char* kHalfSpaces = R"(
-NOOK_AT_HALF_SPACESuniform usampler2D nook_half_spaces; // the picture of the stage NOOK_HALF_SPACES
+NOOK_NEEDS nook_half_spaces; // the picture of the stage NOOK_HALF_SPACES
 
 uvec4 nookHalfSpace(ivec2 texel, int four)
 {
@@ -356,123 +401,105 @@ uvec4 nookHalfSpace(ivec2 texel, int four)
 )";
 
 constexpr const char* kHalfSpacesMain = R"(
-layout(location = 0) out uvec4 nook_bits;
-
-void main()
+uvec4 nookHalfSpacesAt(ivec2 texel)
 {
-	ivec2 texel = ivec2(gl_FragCoord.xy);
 	int four = texel.y / nookHalfSpaces();
-	nook_bits = nookHalfSpaceTexel(ivec2(texel.x, texel.y - four * nookHalfSpaces()), four);
+	return nookHalfSpaceTexel(ivec2(texel.x, texel.y - four * nookHalfSpaces()), four);
 }
 )";
 
-// 128 directions per target.
-std::string maskMain(int directions)
+constexpr const char* kMaskMain = R"(
+NOOK_STATICvec3 nook_normal;
+NOOK_STATICfloat nook_height;
+
+// Directions 0 to 127; nookMoreBits: the others.
+uvec4 nookBits(ivec2 pixel)
 {
-	std::string outputs;
-	std::string sets;
-	for (int target = 0; 128 * target < directions; ++target)
-	{
-		const std::string number = std::to_string(target);
-		outputs += "layout(location = " + number + ") out uvec4 nook_bits_" + number + ";\n";
-		sets += "\tnook_bits_" + number + " = height != 0.0 ? nookCovered(" + number + ", normal, height) : uvec4(0u);\n";
-	}
-	return "\n" + outputs +
-		   "\nvoid main()\n{\n\tvec3 normal = nookReceive(ivec2(gl_FragCoord.xy) * nook.cell);\n"
-		   "\tfloat height = nookMaskHeight(normal);\n" +
-		   sets + "}\n";
+	nook_normal = nookReceive(pixel);
+	nook_height = nookMaskHeight(nook_normal);
+	return nook_height != 0.0 ? nookCovered(0, nook_normal, nook_height) : uvec4(0u, 0u, 0u, 0u);
 }
+uvec4 nookMoreBits()
+{
+	return nook_height != 0.0 ? nookCovered(1, nook_normal, nook_height) : uvec4(0u, 0u, 0u, 0u);
+}
+)";
 
 std::string maskResolveMain(int directions)
 {
 	const bool two = directions > 128;
-	std::string text = "\nNOOK_AT_SUMSuniform usampler2D nook_sums; // the pictures of the fragment stage\n";
-	text += two ? "NOOK_AT_MORE_SUMSuniform usampler2D nook_more_sums;\n" : "";
-	text += "layout(location = 0) out float nook_visibility;\n\nvoid main()\n{\n\tivec2 cell = ivec2(gl_FragCoord.xy);\n";
+	std::string text = "\nNOOK_NEEDS nook_sums; // the pictures of the fragment stage\n";
+	text += two ? "NOOK_NEEDS nook_more_sums;\n" : "";
 	// Channels that the texture lacks read as 1.
 	const char* const there = directions == 32 ? " * uvec4(1u, 0u, 0u, 0u)" : directions == 64 ? " * uvec4(1u, 1u, 0u, 0u)" : "";
-	text += std::string("\tuint covered = nookBitsOf(texelFetch(nook_sums, cell, 0)") + there + ");\n";
+	text += std::string("\nfloat nookResolved(ivec2 cell)\n{\n\tuint covered = nookBitsOf(texelFetch(nook_sums, cell, 0)") + there +
+			");\n";
 	text += two ? "\tcovered += nookBitsOf(texelFetch(nook_more_sums, cell, 0));\n" : "";
-	return text + "\tnook_visibility = 1.0 - float(covered) / " + std::to_string(directions) + ".0;\n}\n";
+	return text + "\treturn 1.0 - float(covered) / " + std::to_string(directions) + ".0;\n}\n";
+}
+
+// The entry point of a fragment stage. values: of its targets, where PIXEL is the pixel. between: reads what the vertex stage
+// passes.
+std::string entryText(GlslTarget target, const std::string& type, const std::string& name, const std::vector<std::string>& values,
+					  bool between = false)
+{
+	const bool hlsl = target == GlslTarget::hlsl60;
+	std::string outputs;
+	std::string sets = hlsl && between ? "\tnook_between = between;\n" : "";
+	const char* const pixel = !hlsl ? "ivec2(gl_FragCoord.xy)" : between ? "ivec2(between.position.xy)" : "ivec2(place.xy)";
+	for (std::size_t i = 0; i < values.size(); ++i)
+	{
+		const std::string number = std::to_string(i);
+		const std::string one = type + " " + name + (values.size() > 1 ? "_" + number : "");
+		outputs += hlsl ? ", out " + one + " : SV_Target" + number : "layout(location = " + number + ") out " + one + ";\n";
+		sets += "\t" + one.substr(type.size() + 1) + " = " + replaced(values[i], "PIXEL", pixel) + ";\n";
+	}
+	const std::string head =
+		hlsl ? std::string("void main(") + (between ? "NookBetween between" : "vec4 place : SV_Position") + outputs + ")"
+			 : outputs + "\nvoid main()";
+	return target == GlslTarget::wgsl ? "" : "\n" + head + "\n{\n" + sets + "}\n";
 }
 
 std::string fragmentStage(const AovTextSettings& settings, const std::string& buffers)
 {
-	Functions functions(volumeKernels(), hasFma(settings.target));
+	FunctionWriter functions(volumeKernels());
 	std::string text = buffers + betweenText(settings.target, "in") + inputs(settings) + kReceiver;
-	text += functions.of("nookPosition") + functions.of("nookDepthError") + functions.of("nookHeight") + functions.of("nookLift");
+	text += functionOf(functions, "nookPosition") + functionOf(functions, "nookDepthError") + functionOf(functions, "nookHeight") +
+			functionOf(functions, "nookLift");
 	if (settings.directions == 0)
 	{
-		return text + functions.of("nookVolume") + stageText(assets::aov_fragment_glsl) + kFragmentMain;
+		return text + functionOf(functions, "nookVolume", settings.target) + stageText(assets::aov_fragment_glsl) +
+			   entryText(settings.target, "float", "nook_occlusion", {"nookOcclusion(PIXEL * nook.cell)"}, true);
 	}
-	text += functions.of("nookReaches") + functions.of("nookFalloff");
-	functions.of("nookHalfSpaceTexel"); // in masksText
-	text += kHalfSpaces + functions.of("nookMaskBits");
+	std::vector<std::string> values{"nookBits(PIXEL * nook.cell)", "nookMoreBits()"};
+	values.resize(settings.directions > 128 ? 2 : 1);
+	text += functionOf(functions, "nookReaches") + functionOf(functions, "nookFalloff");
+	functionOf(functions, "nookHalfSpaceTexel"); // in masksText
+	text += kHalfSpaces + functionOf(functions, "nookMaskBits", settings.target);
 	std::string receiver = stageText(assets::aov_fragment_glsl);
 	receiver.resize(receiver.find("\n// AOV eqs. 4 and 5."));
-	return text + receiver + stageText(assets::aov_mask_fragment_glsl) + maskMain(settings.directions);
+	return text + receiver + stageText(assets::aov_mask_fragment_glsl) + kMaskMain +
+		   entryText(settings.target, "uvec4", "nook_bits", values, true);
 }
 
 // The part that the fragment stage of masks and the stage NOOK_HALF_SPACES share.
 std::string masksText(int directions)
 {
-	Functions functions(volumeKernels());
+	FunctionWriter functions(volumeKernels());
 	return "\n#if defined(NOOK_FRAGMENT) || defined(NOOK_HALF_SPACES)\n" + raysText(directions) +
-		   functions.of("nookHalfSpaceTexel") + "#endif\n";
+		   functionOf(functions, "nookHalfSpaceTexel") + "#endif\n";
 }
 
 std::string sparseStage(const AovTextSettings& settings)
 {
-	Functions functions(sparseKernels());
-	return inputs(settings) + kSparseInput + functions.of("nookSparse") + kSparseMain;
+	FunctionWriter functions(volumeKernels());
+	return inputs(settings) + kSparseInput + functionOf(functions, "nookSparse") + kSparseMain +
+		   entryText(settings.target, "float", "nook_visibility", {"nookKnown(PIXEL)"});
 }
 
-std::string stage(const char* name, const std::string& text)
+std::string stage(GlslTarget target, const std::string& name, const std::string& text)
 {
-	return std::string("\n#ifdef ") + name + "\n" + text + "#endif // " + name + "\n";
-}
-
-// Where resources are, on targets with explicit numbers; those of samplers match the modules of screen-space methods. OpenGL
-// counts each kind on its own, Vulkan all of them.
-struct Place
-{
-	const char* word; // before the declaration
-	const char* macro;
-	int number;
-	const char* kind; // of OpenGL's
-	int vulkan;
-	const char* vulkan_kind;
-};
-constexpr std::array kPlaces{
-	Place{"NOOK_AT_BLOCK", "NOOK_BLOCK_BINDING", 0, "std140, binding", 0, "std140, binding"},
-	Place{"NOOK_AT_FACES", "NOOK_FACES_LOCATION", 0, "location", 16, "binding"},
-	Place{"NOOK_AT_DEPTHS", "NOOK_DEPTHS_BINDING", 1, "binding", 1, "binding"},
-	Place{"NOOK_AT_NORMALS", "NOOK_NORMALS_BINDING", 2, "binding", 2, "binding"},
-	Place{"NOOK_AT_CORNERS", "NOOK_CORNERS_BINDING", 0, "std430, binding", 3, "std430, binding"},
-	Place{"NOOK_AT_POLYGONS", "NOOK_POLYGONS_BINDING", 1, "std430, binding", 4, "std430, binding"},
-	Place{"NOOK_AT_CLUSTERS", "NOOK_CLUSTERS_BINDING", 2, "std430, binding", 5, "std430, binding"},
-	Place{"NOOK_AT_HALF_SPACES", "NOOK_HALF_SPACES_BINDING", 10, "binding", 10, "binding"},
-	Place{"NOOK_AT_CELLS", "NOOK_CELLS_BINDING", 6, "binding", 6, "binding"},
-	Place{"NOOK_AT_SUMS", "NOOK_SUMS_BINDING", 13, "binding", 13, "binding"},
-	Place{"NOOK_AT_MORE_SUMS", "NOOK_MORE_SUMS_BINDING", 14, "binding", 14, "binding"},
-};
-
-std::string withPlaces(std::string text, GlslTarget target)
-{
-	const bool vulkan = target == GlslTarget::vulkan;
-	for (const Place& place : kPlaces)
-	{
-		const std::string macro = place.macro;
-		const std::string number = std::to_string(vulkan ? place.vulkan : place.number);
-		const bool block = std::string_view("std140, binding") == place.kind;
-		text =
-			replaced(text, place.word,
-					 !vulkan && target != GlslTarget::gl430 ? (block ? "layout(std140) " : "")
-															: "#ifndef " + macro + "\n#define " + macro + " " + number +
-																  "\n#endif\nlayout(" + (vulkan ? "set = NOOK_SET, " : "") +
-																  (vulkan ? place.vulkan_kind : place.kind) + " = " + macro + ") ");
-	}
-	return vulkan ? replaced(text, "gl_VertexID", "gl_VertexIndex") : text;
+	return target == GlslTarget::wgsl ? text : "\n#ifdef " + name + "\n" + text + "#endif // " + name + "\n";
 }
 
 } // namespace
@@ -480,19 +507,41 @@ std::string withPlaces(std::string text, GlslTarget target)
 std::string aovText(const AovTextSettings& settings)
 {
 	const GlslTarget target = settings.target;
-	const std::string buffers = target == GlslTarget::gl330 ? kBuffers330 : target == GlslTarget::es300 ? kBuffersEs300 : kStorage;
-	std::string text = kBlock;
-	Functions of_vertex(volumeKernels(), hasFma(target));
-	text += stage("NOOK_VERTEX", buffers + betweenText(target, "out") + of_vertex.of("nookCross") + "\n#ifdef NOOK_CHOOSE_FACES\n" +
-									 facesText(target) + inputs(settings) + stageText(assets::aov_faces_glsl) +
-									 "#endif // NOOK_CHOOSE_FACES\n" + stageText(assets::aov_vertex_glsl) + kVertexMain);
-	text += settings.directions > 0 ? masksText(settings.directions) : "";
-	text += stage("NOOK_FRAGMENT", fragmentStage(settings, buffers));
-	text += stage("NOOK_RESOLVE", settings.directions == 0
-									  ? stageText(assets::aov_resolve_glsl) + kResolveMain
-									  : stageText(assets::aov_mask_resolve_glsl) + maskResolveMain(settings.directions));
-	text += settings.directions > 0 ? stage("NOOK_HALF_SPACES", kHalfSpacesMain) : "";
-	return withPlaces(text + stage("NOOK_SPARSE", sparseStage(settings)), target);
+	const bool hlsl = target == GlslTarget::hlsl60;
+	std::string buffers = hasNumbers(target) ? kStorage : kBuffers330;
+	if (target == GlslTarget::es300)
+	{
+		static const std::regex fetch(R"(texelFetch\((\w+), ([^)]*)\))");
+		buffers = kTexel + std::regex_replace(replaced(buffers, "usamplerBuffer", "highp usampler2D"), fetch,
+											  "texelFetch($1, nookTexel($2, textureSize($1, 0)), 0)");
+	}
+	const char* const vertex_main = hlsl ? kVertexHlsl : target == GlslTarget::wgsl ? "" : kVertexMain;
+	const bool masks = settings.directions > 0;
+	FunctionWriter of_vertex(volumeKernels());
+	std::string text = blockText(target) +
+					   stage(target, "NOOK_VERTEX",
+							 buffers + betweenText(target, "out") + functionOf(of_vertex, "nookCross", target) +
+								 "\n#ifdef NOOK_CHOOSE_FACES\n" + kFaces + inputs(settings) + stageText(assets::aov_faces_glsl) +
+								 "#endif // NOOK_CHOOSE_FACES\n" + stageText(assets::aov_vertex_glsl) + vertex_main);
+	text += masks ? masksText(settings.directions) : "";
+	text += stage(target, "NOOK_FRAGMENT", fragmentStage(settings, buffers));
+	text += stage(target, "NOOK_RESOLVE",
+				  (masks ? stageText(assets::aov_mask_resolve_glsl) + maskResolveMain(settings.directions)
+						 : stageText(assets::aov_resolve_glsl) + kResolved) +
+					  entryText(target, "float", "nook_visibility", {"nookResolved(PIXEL)"}));
+	text += masks ? stage(target, "NOOK_HALF_SPACES",
+						  kHalfSpacesMain + entryText(target, "uvec4", "nook_bits", {"nookHalfSpacesAt(PIXEL)"}))
+				  : "";
+	text += stage(target, "NOOK_SPARSE", sparseStage(settings));
+	for (const Resource& resource : kResources)
+	{
+		const bool bits =
+			masks && (resource.name == std::string_view("nook_sums") || resource.name == std::string_view("nook_more_sums"));
+		text = replaced(text, std::string("NOOK_NEEDS ") + resource.name + ";",
+						declarationOf(resource, bits ? "usampler2D" : resource.type, target));
+	}
+	text = replaced(text, "NOOK_STATIC", hlsl ? "static " : "");
+	return target == GlslTarget::vulkan ? replaced(text, "gl_VertexID", "gl_VertexIndex") : text;
 }
 
 } // namespace nook

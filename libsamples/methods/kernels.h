@@ -43,28 +43,7 @@ struct alignas(16) ShadeBlock
 namespace shade_kernels
 {
 
-using glm::abs;
-using glm::asin;
-using glm::clamp;
-using glm::cos;
-using glm::cross;
-using glm::dot;
-using glm::exp;
-using glm::floor;
-using glm::ivec2;
-using glm::ivec3;
-using glm::ivec4;
-using glm::log2;
-using glm::max;
-using glm::min;
-using glm::pow;
-using glm::sin;
-using glm::sqrt;
-using glm::uint;
-using glm::uvec4;
-using glm::vec2;
-using glm::vec3;
-using glm::vec4;
+using namespace glm; // names of GLSL
 
 class Kernels
 {

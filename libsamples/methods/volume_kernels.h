@@ -18,20 +18,7 @@
 namespace nook::volume_kernels
 {
 
-using glm::abs;
-using glm::clamp;
-using glm::cross;
-using glm::dot;
-using glm::floor;
-using glm::ivec2;
-using glm::max;
-using glm::min;
-using glm::sqrt;
-using glm::uint;
-using glm::uvec4;
-using glm::vec2;
-using glm::vec3;
-using glm::vec4;
+using namespace glm; // names of GLSL
 
 class Kernels
 {

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Fragment stage of the volumes: from a pixel that a volume covers to the occlusion of the surface there by the polygon.
 
-// Corner i of the polygon relative to the receiver.
-vec3 nookCorner(int i)
-{
-	return nook_base + nook_step * vec3(nookPackedCorner(nook_polygon.x + i).xyz);
-}
-
 // From view space to the axes of the world.
 vec3 nookTurned(vec3 v)
 {

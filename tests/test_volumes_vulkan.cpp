@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Volumes and masks in Vulkan's GLSL and in HLSL, compiled by glslang and drawn by a Vulkan driver.
+#include "other_tools.h"
+#include "small_gbuffers.h"
+#include "small_volumes.h"
+#include "temporary_folder.h"
+#include "vulkan_device.h"
+
+#include "emit/module.h"
+#include "shade/aov_gl_parts.h"
+
+#include <map>
+
+using namespace nook;
+using namespace nook::test;
+
+namespace
+{
+
+constexpr const char* kScreenTriangle = R"(#version 450
+void main()
+{
+	gl_Position = vec4(gl_VertexIndex == 1 ? 3.0 : -1.0, gl_VertexIndex == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}
+)";
+
+// SPIR-V of a stage of the volumes, or of other GLSL.
+std::string spirvOfStage(const std::string& text, const char* kind, const std::string& options, const TemporaryFolder& folder)
+{
+	writeFile(folder / "m.txt", text);
+	REQUIRE(passes("glslangValidator -V -S " + std::string(kind) + " " + options + " -o '" + folder / "m.spv" + "' '" +
+					   folder / "m.txt" + "'",
+				   folder));
+	return readFile(folder / "m.spv");
+}
+
+VkPipelineShaderStageCreateInfo vulkanStageOf(const VulkanDevice& vulkan, VkShaderStageFlagBits kind, const std::string& spirv)
+{
+	std::vector<uint32_t> words(spirv.size() / 4);
+	std::memcpy(words.data(), spirv.data(), spirv.size());
+	auto module_info = vulkanInfo<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+	module_info.codeSize = spirv.size();
+	module_info.pCode = words.data();
+	auto stage = vulkanInfo<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
+	stage.stage = kind;
+	stage.pName = "main";
+	requireVulkan(vkCreateShaderModule(vulkan.device(), &module_info, nullptr, &stage.module));
+	return stage;
+}
+
+// One layout for all stages: docs/reference/modules.md, bindings.
+class VolumeLayout
+{
+public:
+	VolumeLayout(const VulkanDevice& vulkan, bool hlsl) : m_vulkan(vulkan)
+	{
+		m_texture = hlsl ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+		std::vector<VkDescriptorSetLayoutBinding> bindings;
+		for (uint32_t i = 0; i < 15; ++i)
+		{
+			bindings.push_back({i, typeOf(i), 1, VK_SHADER_STAGE_ALL_GRAPHICS, nullptr});
+		}
+		auto set_info = vulkanInfo<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+		set_info.bindingCount = static_cast<uint32_t>(bindings.size());
+		set_info.pBindings = bindings.data();
+		requireVulkan(vkCreateDescriptorSetLayout(vulkan.device(), &set_info, nullptr, &m_set_layout));
+		auto layout_info = vulkanInfo<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+		layout_info.setLayoutCount = 1;
+		layout_info.pSetLayouts = &m_set_layout;
+		requireVulkan(vkCreatePipelineLayout(vulkan.device(), &layout_info, nullptr, &m_layout));
+		auto sampler_info = vulkanInfo<VkSamplerCreateInfo>(VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO);
+		requireVulkan(vkCreateSampler(vulkan.device(), &sampler_info, nullptr, &m_sampler));
+		const std::array<VkDescriptorPoolSize, 3> sizes{VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
+														VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3},
+														VkDescriptorPoolSize{m_texture, 11}};
+		auto pool_info = vulkanInfo<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
+		pool_info.maxSets = 1;
+		pool_info.poolSizeCount = 3;
+		pool_info.pPoolSizes = sizes.data();
+		VkDescriptorPool pool{};
+		requireVulkan(vkCreateDescriptorPool(vulkan.device(), &pool_info, nullptr, &pool));
+		auto set = vulkanInfo<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
+		set.descriptorPool = pool;
+		set.descriptorSetCount = 1;
+		set.pSetLayouts = &m_set_layout;
+		requireVulkan(vkAllocateDescriptorSets(vulkan.device(), &set, &m_set));
+	}
+
+	void bind(uint32_t binding, const VulkanPicture& picture) const
+	{
+		const VkDescriptorImageInfo image{m_sampler, picture.view, VK_IMAGE_LAYOUT_GENERAL};
+		write(binding, &image, nullptr);
+	}
+	void bind(uint32_t binding, const VulkanBuffer& buffer) const
+	{
+		const VkDescriptorBufferInfo whole{buffer.buffer, 0, VK_WHOLE_SIZE};
+		write(binding, nullptr, &whole);
+	}
+
+	// Draws into a picture that is cleared to 0. draw(commands) makes the draw calls. The vertices' buffer holds the numbers of the
+	// clusters. Blending adds floats and joins integers by OR.
+	template <class Draw>
+	void draw(const std::string& vertex, const std::string& fragment, const VulkanPicture& target, const VulkanBuffer& numbers,
+			  VkFrontFace front, const Draw& draw) const
+	{
+		const std::array stages{vulkanStageOf(m_vulkan, VK_SHADER_STAGE_VERTEX_BIT, vertex),
+								vulkanStageOf(m_vulkan, VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
+		const VkVertexInputBindingDescription instances{0, 4, VK_VERTEX_INPUT_RATE_INSTANCE};
+		const VkVertexInputAttributeDescription cluster{0, 0, VK_FORMAT_R32_SINT, 0};
+		auto input = vulkanInfo<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
+		input.vertexBindingDescriptionCount = 1;
+		input.pVertexBindingDescriptions = &instances;
+		input.vertexAttributeDescriptionCount = 1;
+		input.pVertexAttributeDescriptions = &cluster;
+		auto assembly =
+			vulkanInfo<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
+		assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+		const VkExtent2D size{static_cast<uint32_t>(target.shape.width), static_cast<uint32_t>(target.shape.height)};
+		const VkViewport view{0.0F, 0.0F, static_cast<float>(size.width), static_cast<float>(size.height), 0.0F, 1.0F};
+		const VkRect2D whole{{0, 0}, size};
+		auto viewport = vulkanInfo<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
+		viewport.viewportCount = 1;
+		viewport.pViewports = &view;
+		viewport.scissorCount = 1;
+		viewport.pScissors = &whole;
+		auto raster =
+			vulkanInfo<VkPipelineRasterizationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
+		raster.frontFace = front;
+		raster.lineWidth = 1.0F;
+		auto samples = vulkanInfo<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
+		samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+		const bool bits = target.shape.format == PictureFormat::counts;
+		VkPipelineColorBlendAttachmentState add{};
+		add.blendEnable = bits ? VK_FALSE : VK_TRUE;
+		add.srcColorBlendFactor = add.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
+		add.colorWriteMask = 15;
+		auto blend = vulkanInfo<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
+		blend.logicOpEnable = bits ? VK_TRUE : VK_FALSE;
+		blend.logicOp = VK_LOGIC_OP_OR;
+		blend.attachmentCount = 1;
+		blend.pAttachments = &add;
+		const VkDynamicState cull = VK_DYNAMIC_STATE_CULL_MODE;
+		auto dynamic = vulkanInfo<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
+		dynamic.dynamicStateCount = 1;
+		dynamic.pDynamicStates = &cull;
+		auto formats = vulkanInfo<VkPipelineRenderingCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO);
+		formats.colorAttachmentCount = 1;
+		formats.pColorAttachmentFormats = &target.format;
+		auto info = vulkanInfo<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
+		info.pNext = &formats;
+		info.stageCount = 2;
+		info.pStages = stages.data();
+		info.pVertexInputState = &input;
+		info.pInputAssemblyState = &assembly;
+		info.pViewportState = &viewport;
+		info.pRasterizationState = &raster;
+		info.pMultisampleState = &samples;
+		info.pColorBlendState = &blend;
+		info.pDynamicState = &dynamic;
+		info.layout = m_layout;
+		VkPipeline pipeline{};
+		requireVulkan(vkCreateGraphicsPipelines(m_vulkan.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
+
+		auto attachment = vulkanInfo<VkRenderingAttachmentInfo>(VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO);
+		attachment.imageView = target.view;
+		attachment.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
+		attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+		attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+		auto rendering = vulkanInfo<VkRenderingInfo>(VK_STRUCTURE_TYPE_RENDERING_INFO);
+		rendering.renderArea = whole;
+		rendering.layerCount = 1;
+		rendering.colorAttachmentCount = 1;
+		rendering.pColorAttachments = &attachment;
+		m_vulkan.run(
+			[&](VkCommandBuffer commands)
+			{
+				const VkDeviceSize start = 0;
+				vkCmdBeginRendering(commands, &rendering);
+				vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+				vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, m_layout, 0, 1, &m_set, 0, nullptr);
+				vkCmdBindVertexBuffers(commands, 0, 1, &numbers.buffer, &start);
+				vkCmdSetCullMode(commands, VK_CULL_MODE_NONE);
+				draw(commands);
+				vkCmdEndRendering(commands);
+			});
+	}
+
+private:
+	VkDescriptorType typeOf(uint32_t binding) const
+	{
+		return binding == 0                 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+			   : binding > 2 && binding < 6 ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
+											: m_texture;
+	}
+	void write(uint32_t binding, const VkDescriptorImageInfo* image, const VkDescriptorBufferInfo* buffer) const
+	{
+		auto info = vulkanInfo<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
+		info.dstSet = m_set;
+		info.dstBinding = binding;
+		info.descriptorCount = 1;
+		info.descriptorType = typeOf(binding);
+		info.pImageInfo = image;
+		info.pBufferInfo = buffer;
+		vkUpdateDescriptorSets(m_vulkan.device(), 1, &info, 0, nullptr);
+	}
+
+	const VulkanDevice& m_vulkan;
+	VkDescriptorType m_texture{};
+	VkDescriptorSetLayout m_set_layout{};
+	VkPipelineLayout m_layout{};
+	VkSampler m_sampler{};
+	VkDescriptorSet m_set{};
+};
+
+template <class Item> VulkanBuffer vulkanBufferOf(const VulkanDevice& vulkan, const std::vector<Item>& items)
+{
+	return VulkanBuffer(vulkan, items.size() * sizeof(Item), items.data());
+}
+
+// Visibility by the emitted shaders; directions: 0 for sums, or up to 128.
+std::vector<float> drawnVolumes(const GBuffer& gbuffer, const VolumeSet& set, GlslTarget target, int directions)
+{
+	const VulkanDevice& vulkan = anyDevice();
+	const TemporaryFolder folder;
+	const bool hlsl = target == GlslTarget::hlsl60;
+	const std::string text = volumesGlsl({target, directions, false}, {"nook emit", "test", {}, {}});
+	const auto spirv = [&](const std::string& stage, const char* kind)
+	{
+		return hlsl ? spirvOfStage(text, kind, "-D -Od -e main -DNOOK_VULKAN -DNOOK_ANY_DEPTH -D" + stage, folder)
+					: spirvOfStage("#version 450\n#define NOOK_ANY_DEPTH\n#define " + stage + "\n" + text, kind, "", folder);
+	};
+	const std::string triangle = spirvOfStage(kScreenTriangle, "vert", "", folder);
+
+	const PackedVolumes packed = packVolumes(set, {false}, {});
+	nook_volumes::Header header = headerOf(set, true);
+	header.plane_error = std::max(header.plane_error, packed.plane_error_m);
+	nook_volumes::Camera camera = cameraOf(gbuffer, 1);
+	camera.faces_by_rows = true;
+	nook_volumes::Frame frame;
+	REQUIRE(frame.set(header, camera) == nullptr);
+	std::vector<nook_volumes::SeenCluster> seen;
+	std::vector<int> numbers;
+	for (const nook_volumes::Cluster& cluster : packed.clusters)
+	{
+		seen.push_back(frame.seen(cluster));
+		numbers.push_back(static_cast<int>(numbers.size()));
+	}
+	std::vector<glm::vec4> normals;
+	for (const glm::vec3& normal : gbuffer.normals)
+	{
+		normals.emplace_back(normal, 0.0F);
+	}
+	const auto shapeOf = [&gbuffer](PictureFormat format)
+	{
+		return PictureShape{format, gbuffer.width_px, gbuffer.height_px};
+	};
+	const VulkanBuffer block(vulkan, sizeof frame.block, &frame.block);
+	const VulkanBuffer corners = vulkanBufferOf(vulkan, packed.corners);
+	const VulkanBuffer polygons = vulkanBufferOf(vulkan, packed.polygons);
+	const VulkanBuffer clusters = vulkanBufferOf(vulkan, seen);
+	const VulkanBuffer instances = vulkanBufferOf(vulkan, numbers);
+	const VulkanPicture depths(vulkan, shapeOf(PictureFormat::scalar), finiteDepths(gbuffer).data());
+	const VulkanPicture normal_picture(vulkan, shapeOf(PictureFormat::quad), normals.data());
+	const VulkanPicture sums(vulkan, shapeOf(directions > 0 ? PictureFormat::counts : PictureFormat::scalar));
+	const VulkanPicture half_spaces(vulkan, {PictureFormat::counts, 64, 64});
+	const VulkanPicture visibility(vulkan, shapeOf(PictureFormat::scalar));
+	const VolumeLayout layout(vulkan, hlsl);
+	layout.bind(0, block);
+	layout.bind(1, depths);
+	layout.bind(2, normal_picture);
+	layout.bind(3, corners);
+	layout.bind(4, polygons);
+	layout.bind(5, clusters);
+	for (const uint32_t unread : {6U, 7U, 8U, 9U, 11U, 12U, 14U})
+	{
+		layout.bind(unread, depths);
+	}
+	layout.bind(10, half_spaces);
+	layout.bind(13, sums);
+	const auto one = [](VkCommandBuffer commands)
+	{
+		vkCmdDraw(commands, 3, 1, 0, 0);
+	};
+	if (directions > 0)
+	{
+		layout.draw(triangle, spirv("NOOK_HALF_SPACES", "frag"), half_spaces, instances, VK_FRONT_FACE_CLOCKWISE, one);
+	}
+	layout.draw(spirv("NOOK_VERTEX", "vert"), spirv("NOOK_FRAGMENT", "frag"), sums, instances,
+				frame.mirrored() ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE,
+				[&](VkCommandBuffer commands)
+				{
+					for (uint32_t i = 0; i < packed.clusters.size(); ++i)
+					{
+						const nook_volumes::Cluster& cluster = packed.clusters[i];
+						if (frame.inSight(cluster))
+						{
+							vkCmdSetCullMode(commands, frame.holdsEye(cluster) ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_BACK_BIT);
+							vkCmdDraw(commands, 12 * cluster.corner_count, 1, hlsl ? 0 : 12 * cluster.first_corner, i);
+						}
+					}
+				});
+	layout.draw(triangle, spirv("NOOK_RESOLVE", "frag"), visibility, instances, VK_FRONT_FACE_CLOCKWISE, one);
+	return visibility.read(vulkan);
+}
+
+} // namespace
+
+TEST_CASE("module: HLSL and Vulkan's GLSL draw the volumes and masks of nook shade", "[emit]")
+{
+	if (anyDevice().device() == nullptr || !anyDevice().draws() || !toolExists("glslangValidator"))
+	{
+		WARN("skipped: found no Vulkan 1.3 or no glslangValidator, expected Debian's mesa-vulkan-drivers and glslang-tools");
+		return;
+	}
+	const Level level = builtinLevel("cornell");
+	const VolumeSet set = volumesOf(level, 0.4, 8);
+	const Tracer tracer(level, {});
+	for (const bool within : {false, true})
+	{
+		View view = viewOf(level.cameras.front(), 64, 48);
+		if (within) // volumes that contain the eye
+		{
+			view.camera_from_world = glm::inverse(worldFromCamera({0.1, 0.3, 0.2}, {-0.2, 0.1, -0.4}));
+		}
+		const GBuffer gbuffer = castGBuffer(tracer, view, 64, 48, NormalKind::geometric, {});
+		for (const int directions : within ? std::vector<int>{0} : std::vector<int>{0, 64}) // drivers take long to compile masks
+		{
+			AovSettings settings;
+			settings.mask = directions > 0;
+			settings.directions = std::max(directions, kLeastDirections);
+			settings.target = AovTarget::r32f;
+			const std::vector<float> expected = aovOnCpu(gbuffer, set, settings, {2, {}}).shaded.visibility;
+			const std::vector<float> glsl = drawnVolumes(gbuffer, set, GlslTarget::vulkan, directions);
+			CAPTURE(anyDevice().name(), within, directions, largestDifference(expected, glsl));
+			std::size_t beyond = 0;
+			for (std::size_t i = 0; i < glsl.size(); ++i)
+			{
+				beyond += std::fabs(glsl[i] - expected[i]) > 1.0F / 255.0F ? 1U : 0U;
+			}
+			CHECK(beyond <= glsl.size() / (directions > 0 ? 100 : 1000)); // a direction that just misses an edge is one bit
+			CHECK(*std::min_element(glsl.begin(), glsl.end()) < 0.7F);
+			CHECK(largestDifference(glsl, drawnVolumes(gbuffer, set, GlslTarget::hlsl60, directions)) <=
+				  (directions > 0 ? 1.0F / 64.0F : 1e-6F));
+		}
+	}
+}

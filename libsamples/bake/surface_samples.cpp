@@ -7,8 +7,6 @@
 #include "core/random.h"
 #include "core/work_units.h"
 
-#include <glm/geometric.hpp>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -122,17 +120,6 @@ void takeValues(std::span<SurfaceSample> samples, std::span<const ReferenceValue
 }
 
 } // namespace
-
-std::vector<double> areasOf(const Level& level)
-{
-	std::vector<double> areas;
-	areas.reserve(level.triangles.size());
-	for (std::size_t t = 0; t < level.triangles.size(); ++t)
-	{
-		areas.push_back(0.5 * glm::length(twiceAreaOf(level, t)));
-	}
-	return areas;
-}
 
 std::vector<std::size_t> samplesOfTriangles(std::span<const double> areas, std::size_t count)
 {

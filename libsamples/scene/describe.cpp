@@ -375,12 +375,7 @@ void findComponents(const Level& level, const std::vector<uint32_t>& place, Leve
 
 void findSizes(const Level& level, LevelFacts& facts)
 {
-	std::vector<double> areas;
-	areas.reserve(level.triangles.size());
-	for (std::size_t t = 0; t < level.triangles.size(); ++t)
-	{
-		areas.push_back(0.5 * glm::length(twiceAreaOf(level, t)));
-	}
+	std::vector<double> areas = areasOf(level);
 	std::sort(areas.begin(), areas.end());
 	const double total = std::accumulate(areas.begin(), areas.end(), 0.0);
 	const double coarse_m2 = 0.25 * facts.radius_m * facts.radius_m;

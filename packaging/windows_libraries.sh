@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Cross-compiles the libraries of the component levels for Windows from Debian's sources: static, by MinGW, into FOLDER, with the licence
-# of each. Takes about half an hour of one processor. A library whose version is there already is not built again.
+# of each. Takes eleven minutes of processor time. A library whose version is there already is not built again.
 # usage: windows_libraries.sh FOLDER    e.g. build/windows-libraries, where the preset windows-levels looks
 set -eu
 

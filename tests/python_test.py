@@ -4,6 +4,7 @@
 import _thread
 import json
 import os
+import signal
 import struct
 import subprocess
 import sys
@@ -213,6 +214,9 @@ class Errors(unittest.TestCase):
                 asked.append(True)
                 _thread.interrupt_main()
 
+        # A shell's background jobs ignore the signal, and Python then raises nothing.
+        handler = signal.signal(signal.SIGINT, signal.default_int_handler)
+        self.addCleanup(signal.signal, signal.SIGINT, handler)
         self.interrupted(interrupt, threading.Thread.start)
 
     def test_interrupt_at_start(self):

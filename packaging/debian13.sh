@@ -78,12 +78,12 @@ done <<-EOT
 	rays.exr reference builtin:courtyard --gbuffer view.exr --radius 1 --rays 64
 	slices.exr shade view.exr --method slices --radius 1
 	volumes.glb volumes builtin:courtyard --distance 0.6
-	bake.glb bake builtin:suburb --radius 1 --rays 16
+	bake.glb bake builtin:courtyard --radius 1 --rays 16
 	level.glb level level.obj
 EOT
 inside try python3 -c 'import nook
 nook.pattern("disk", 9).save("/trial/python.json")
-nook.Level.load("builtin:suburb").bake(radius=1, rays=16, output=".glb").save("/trial/python.glb")'
+nook.Level.load("builtin:courtyard").bake(radius=1, rays=16, output=".glb").save("/trial/python.glb")'
 cmp "$root/try/trial/python.json" "$root/trial.part/disk.json"
 cmp "$root/try/trial/python.glb" "$root/trial.part/bake.glb"
 cp "$root"/build/nook/packages/*.deb "$out/"

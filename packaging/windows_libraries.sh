@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Cross-compiles the libraries of the component levels for Windows from Debian's sources: static, by MinGW, into FOLDER, with the licence
-# of each. Takes about half an hour of one processor. A library whose version is there already is not built again.
+# of each. Takes eleven minutes of processor time. A library whose version is there already is not built again.
 # usage: windows_libraries.sh FOLDER    e.g. build/windows-libraries, where the preset windows-levels looks
 set -eu
 
@@ -27,21 +27,35 @@ EOT
 export APT_CONFIG="$scratch/apt.conf"
 apt-get -q update >/dev/null
 
+# sources PACKAGE: unpacks the newest version that the mirror has completely into source/ and says which in $version. A mirror of the
+# security updates may lack a version that its list names.
+sources()
+{
+	for full in $(apt-cache showsrc --only-source "$1" | sed -n 's/^Version: //p' | sort -Vru); do
+		version=${full#*:}
+		[ ! -e "$folder/licences/${1}_$version" ] || return 0
+		rm -rf source build "$1"_*
+		if { apt-get -q source --download-only "$1=$full" && dpkg-source --no-check -x "$1"_*.dsc source; } >log 2>&1; then
+			return 0
+		fi
+	done
+	# Upstream's own sources, of which Embree needs no changes here.
+	mkdir source
+	tar -C source --strip-components=1 -xf "$1"_*.orig.tar.*z
+	version=${version%-*}
+	echo "windows_libraries.sh: $1: found no version with Debian's changes, expected one; upstream's $version is built" >&2
+}
+
 # library PACKAGE OPTIONS...: the source package, by CMake.
 library()
 {
 	package=$1
 	shift
-	version=$(apt-cache showsrc --only-source "$package" | sed -n 's/^Version: \([0-9]*:\)*//p' | sort -V | tail -n 1)
+	sources "$package"
 	licence=$folder/licences/${package}_$version
 	[ ! -e "$licence" ] || return 0
 	echo "$package $version"
-	rm -rf "$folder/licences/$package"_* source build
-	# A mirror may lack Debian's changes, of which Embree needs none here.
-	apt-get -q source --download-only "$package" >log 2>&1 && dpkg-source --no-check -x "$package"_*.dsc source >log 2>&1 || {
-		mkdir -p source
-		tar -C source --strip-components=1 -xf "$package"_*.orig.tar.*z
-	}
+	rm -rf "$folder/licences/$package"_*
 	if [ "$package" = embree ]; then # takes g++ for Microsoft's compiler, and installs a target that oneTBB's own package lacks
 		sed -i 's/INCLUDE (msvc)/INCLUDE (gnu)/' source/CMakeLists.txt
 		sed -i '/embree.rc\|curve_intersector_virtual\|bvh_builder_hair/d' source/kernels/CMakeLists.txt # resources, and curves, which are off

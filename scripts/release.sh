@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Builds every artefact of a release into a folder, with SHA256SUMS, TESTED (where each was tried by this script, or why not) and NOTES
 # (the first section of CHANGELOG.md). A preset whose compiler is missing is left out, with a line in TESTED. Exit code 4: a test failed.
-# usage: release.sh FOLDER
+# usage: release.sh FOLDER    packages for Debian 13 are built in $NOOK_DEBIAN13, by default /var/tmp/nook_debian13 (packaging/debian13.sh)
 set -eu
 [ $# -eq 1 ] || { echo "release.sh: found '$*', expected FOLDER" >&2; exit 1; }
 mkdir -p "$1"
@@ -37,17 +37,29 @@ tested()
 	esac >>"$out/TESTED"
 }
 
+# atMost MEGABYTES FILE
+atMost()
+{
+	[ "$(wc -c <"$2")" -le $(($1 * 1000000)) ] || echo "${2##*/}: FAILED: $(wc -c <"$2") bytes, expected $1 MB or less" >>"$out/TESTED"
+}
+
 system=$(. /etc/os-release && echo "$PRETTY_NAME")
-if built all release; then
-	release=$PWD/build/release
-	packaging/portable.sh build/release "$out"
-	tested "nook-*-linux-x86_64.tar.xz" "an empty root on $system" sh tests/portable_test.sh "$release/tools/nook" . build/release
+release=$PWD/build/library # the code of the preset release, without its tests
+if built all library; then
+	packaging/portable.sh build/library "$out"
+	atMost 25 "$out"/nook-*-linux-x86_64.tar.xz
+	tested "nook-*-linux-x86_64.tar.xz" "an empty root on $system" sh tests/portable_test.sh "$release/tools/nook" . build/library
 	(cd "$release" && cpack -G DEB -B "$out" >/dev/null)
 	rm -rf "$out/_CPack_Packages"
 	tested "*.deb" "lintian and an empty root on $system" sh tests/debian_test.sh "$release/tools/nook" . "$release"
+	mkdir "$out/debian13"
+	tested "debian13/*.deb" "lintian, an empty root and apt on Debian 13" packaging/debian13.sh "${NOOK_DEBIAN13:-/var/tmp/nook_debian13}" "$out/debian13" \
+		"$release/tools/nook"
+	rmdir "$out/debian13" 2>/dev/null || true # skipped
 	tested "libnook1_*.deb, libnook-dev_*.deb" "C, C++ and C# on $system" sh tests/library_test.sh "$release/tools/nook" . "$release"
 	cmake --install "$release" --prefix "$scratch/installed" >/dev/null
 	packaging/wheel.sh "$scratch/installed" "$out"
+	atMost 25 "$out"/nook-*.whl
 	python3 -m zipfile -e "$out"/nook-*.whl "$scratch/wheel/python"
 	chmod +x "$scratch"/wheel/python/nook/lib/nook_*_worker # as pip does
 	tested "nook-*.whl" "Python on $system" /usr/bin/python3 tests/python_test.py "$release/tools/nook" "$scratch/wheel" "$scratch/wheel/python/nook/lib/libnook.so.1"
@@ -58,7 +70,7 @@ if built all release; then
 fi
 if built all aarch64 -DCMAKE_EXE_LINKER_FLAGS=-static; then
 	packaging/portable.sh build/aarch64 "$out"
-	tested "nook-*-linux-aarch64.tar.xz" "QEMU on $system" sh tests/targets_test.sh "$PWD/build/release/tools/nook" "$PWD" "$PWD/build" aarch64
+	tested "nook-*-linux-aarch64.tar.xz" "QEMU on $system" sh tests/targets_test.sh "$release/tools/nook" "$PWD" "$PWD/build" aarch64
 fi
 windows=windows
 test=targets_test.sh
@@ -69,13 +81,14 @@ fi
 if built all $windows; then
 	(cd build/$windows && cpack -G ZIP -B "$out" >/dev/null)
 	rm -rf "$out/_CPack_Packages"
-	tested "nook-*-windows-x86_64.zip" "Wine on $system" sh tests/$test "$PWD/build/release/tools/nook" "$PWD" "$PWD/build" windows
+	atMost 30 "$out"/nook-*-windows-x86_64.zip
+	tested "nook-*-windows-x86_64.zip" "Wine on $system" sh tests/$test "$release/tools/nook" "$PWD" "$PWD/build" windows
 fi
 if built all wasm; then
 	(cd build/wasm/npm && npm pack --pack-destination "$out" >/dev/null 2>&1)
-	tested "nook-patterns-*.tgz" "Node.js on $system" sh tests/targets_test.sh "$PWD/build/release/tools/nook" "$PWD" "$PWD/build" wasm
+	tested "nook-patterns-*.tgz" "Node.js on $system" sh tests/targets_test.sh "$release/tools/nook" "$PWD" "$PWD/build" wasm
 fi
 awk '/^## / { if (found++) exit } found' CHANGELOG.md >"$out/NOTES"
-(cd "$out" && for file in *; do [ "$file" = TESTED ] || [ "$file" = NOTES ] || sha256sum "$file"; done >"$scratch/sums" && mv "$scratch/sums" SHA256SUMS)
+(cd "$out" && find . -type f ! -name TESTED ! -name NOTES -printf '%P\n' | sort | xargs -d '\n' sha256sum >"$scratch/sums" && mv "$scratch/sums" SHA256SUMS)
 cat "$out/TESTED"
 ! grep -q ': FAILED: ' "$out/TESTED" || exit 4

@@ -1,30 +1,33 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs missing packages for building and testing nook on Debian 12. Quick if nothing is missing.
-# Usage: setup.sh [aarch64] [windows] [wasm] [debian] [targets] [farm] [library] [ogre] [godot] [moderngl] [blender]. The first three add cross
+# Usage: setup.sh [build] [aarch64] [windows] [wasm] [debian] [targets] [farm] [library] [ogre] [godot] [moderngl] [blender]. `build` leaves out what
+# only the tests need, and also works on Debian 13: presets library and patterns. The next three add cross
 # compilers and emulators for ARM64, Windows and the browser, `debian` adds packaging tools, `targets` all four; `farm` adds the
 # engines that scripts/farm.sh starts, `library` the tools for the wheel and its figures, `ogre` and `godot` the engines of these
 # examples, `moderngl` the Python package for a test, `blender` Blender for the test of its add-on.
 set -eu
 
-packages="g++ clang llvm libclang-rt-14-dev cmake ninja-build make ccache git
+packages="g++ cmake ninja-build make ccache git pkg-config
 	libcgal-dev libboost-dev libeigen3-dev libopenimageio-dev libopenexr-dev libpng-dev libjpeg-dev zlib1g-dev libglm-dev libtbb-dev libcli11-dev nlohmann-json3-dev
-	libmeshoptimizer-dev libdraco-dev libembree-dev libepoxy-dev libglfw3-dev libegl-dev libegl-mesa0 libgl1-mesa-dri pkg-config
+	libmeshoptimizer-dev libdraco-dev libembree-dev libepoxy-dev"
+tests="clang llvm libclang-rt-14-dev libglfw3-dev libegl-dev libegl-mesa0 libgl1-mesa-dri
 	catch2 libbenchmark-dev libvulkan-dev mesa-vulkan-drivers glslang-tools spirv-tools openimageio-tools xz-utils locales qemu-user-static xvfb xauth chromium fonts-dejavu-core mkdocs python3-numpy mono-mcs mono-runtime abigail-tools"
 
 # For Khronos' glTF validator in one test. Other Node.js builds include npm and conflict with Debian's.
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
-	packages="$packages nodejs npm"
+	tests="$tests nodejs npm"
 fi
 
 # shellcheck disable=SC2046 # words
 set -- $(printf '%s ' "$@" | sed 's/targets/aarch64 windows wasm debian/')
 for target in "$@"; do
 	case $target in
+	build) tests= ;;
 	aarch64) packages="$packages g++-aarch64-linux-gnu" ;;
 	windows) packages="$packages g++-mingw-w64-x86-64-posix wine64 dpkg-dev" ;;
 	wasm) packages="$packages emscripten node-typescript" ;;
-	debian) packages="$packages lintian dpkg-dev fakeroot" ;;
+	debian) packages="$packages lintian dpkg-dev fakeroot python3-numpy" ;;
 	library) packages="$packages python3-matplotlib patchelf" ;;
 	ogre) packages="$packages libogre-1.12-dev" ;;
 	moderngl) packages="$packages python3-moderngl" ;;
@@ -32,11 +35,12 @@ for target in "$@"; do
 	blender) packages="$packages blender" ;;
 	farm) packages="$packages slurm-wlm munge snakemake procps" ;;
 	*)
-		echo "setup.sh: found '$target', expected aarch64, windows, wasm, debian, targets, farm, library, ogre, godot, moderngl, blender or nothing" >&2
+		echo "setup.sh: found '$target', expected build, aarch64, windows, wasm, debian, targets, farm, library, ogre, godot, moderngl, blender or nothing" >&2
 		exit 1
 		;;
 	esac
 done
+packages="$packages $tests"
 
 if ! command -v dpkg-query >/dev/null; then
 	echo "setup.sh: found no dpkg-query, expected Debian 12 or packages equal to:" $packages >&2

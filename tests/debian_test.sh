@@ -78,7 +78,7 @@ if [ -n "$python" ]; then
 	has "$shared" "usr/lib/libnook.so.1 -> .*"
 	has "$python" usr/lib/python3/dist-packages/nook/__init__.py
 	checks=$((checks + 1))
-	dpkg-deb --field "$shared" Depends | grep -q "libembree3-3" || problem "libnook1: found no dependency on libembree3-3"
+	dpkg-deb --field "$shared" Depends | grep -q "libembree[34]-" || problem "libnook1: found no dependency on Embree"
 	for package in "libnook1 (>= $version)" python3-numpy; do
 		dpkg-deb --field "$python" Depends | grep -Fq "$package" || problem "python3-nook: found no dependency on $package"
 	done

@@ -1,56 +1,68 @@
 # SPDX-License-Identifier: MIT
-"""Time and memory of visibility at 100,000 points by Python and by the program: python3 cost.py PROGRAM"""
+"""Time and memory of visibility at 100,000 points by the program, by Python and by C: python3 cost.py PROGRAM [POINTS]
+
+POINTS is the program of examples/library/points.c. The last rows are what Python takes before nook is imported.
+"""
 
 import os
 import subprocess
 import sys
 import tempfile
-import time
 
-LEVEL, COUNT, ROUNDS = "builtin:courtyard", 100_000, 3
+LEVEL, COUNT, ROUNDS = "builtin:courtyard", 100_000, 5
 CHILD = """
-import resource, sys, time, numpy as np, nook
-begun = time.monotonic()
-before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+import sys, numpy as np, nook
 rows = np.load(sys.argv[1])
 level = nook.Level.load(sys.argv[2])
 made = level.visibility(rows[:, :3], rows[:, 3:], radius=1.0, rays=256, output=".csv")
 open(sys.argv[3], "wb").write(made.file(".csv"))
-peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-print(f"python without its start: {time.monotonic() - begun:.2f} s, {(peak - before) / 1024:.0f} MB")
+"""
+# A process of its own, which is small, starts the command: Linux counts the memory of whoever starts a program as the program's.
+STARTER = """
+import os, sys, time
+begun = time.monotonic()
+child = os.fork()
+if child == 0:
+    os.execv(sys.argv[1], sys.argv[1:])
+_, status, usage = os.wait4(child, 0)
+print(os.waitstatus_to_exitcode(status), time.monotonic() - begun, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
 """
 
 
 def measured(command):
     """Seconds, processor seconds and megabytes of a command."""
-    begun = time.monotonic()
-    process = subprocess.Popen(command, stdout=sys.stdout)
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    assert process.returncode == 0, command
-    return time.monotonic() - begun, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+    said = subprocess.run([sys.executable, "-S", "-c", STARTER, *command], stdout=subprocess.PIPE, text=True, check=True).stdout
+    code, wall, processor, memory = said.splitlines()[-1].split()
+    assert code == "0", command
+    return float(wall), float(processor), float(memory)
 
 
-def main(program):
+def main(program, points=None):
     import numpy as np
 
     rng = np.random.default_rng(1)
     rows = np.hstack([rng.uniform(-8, 8, (COUNT, 3)) * (1, 0, 1) + (0, 0.01, 0), np.tile([0.0, 1.0, 0.0], (COUNT, 1))])
     with tempfile.TemporaryDirectory() as folder:
-        array, csv = os.path.join(folder, "points.npy"), os.path.join(folder, "points.csv")
+        array, plain, csv = (os.path.join(folder, name) for name in ("points.npy", "points.f64", "points.csv"))
         np.save(array, rows)
+        rows.tofile(plain)
         with open(csv, "w") as file:
             file.writelines(",".join(repr(number) for number in row) + "\n" for row in rows.tolist())
-        outputs = [os.path.join(folder, name) for name in ("program.csv", "python.csv")]
-        commands = [[program, "reference", LEVEL, "--points", csv, "--radius", "1", "--rays", "256", "-o", outputs[0], "--json", os.devnull],
-                    [sys.executable, "-c", CHILD, array, LEVEL, outputs[1]]]
-        runs = [[measured(command) for command in commands] for _ in range(ROUNDS)]
-        for name, which in (("program", 0), ("python", 1)):
-            wall, processor, memory = (min(run[which][i] for run in runs) for i in range(3))
+        commands = {"program": [program, "reference", LEVEL, "--points", csv, "--radius", "1", "--rays", "256", "-o", "program", "--json", os.devnull],
+                    "python": [sys.executable, "-c", CHILD, array, LEVEL, "python"]}
+        if points is not None:
+            commands["c"] = [points, LEVEL, plain, "c"]
+        commands["python's import of numpy"] = [sys.executable, "-c", "import numpy"]
+        commands["python's start"] = [sys.executable, "-c", ""]
+        made = {name: os.path.join(folder, name + ".csv") for name in commands}
+        commands = {name: [made.get(word, word) for word in command] for name, command in commands.items()}
+        runs = [{name: measured(command) for name, command in commands.items()} for _ in range(ROUNDS)]
+        for name in commands:
+            wall, processor, memory = (min(run[name][i] for run in runs) for i in range(3))
             print(f"{name}: {wall:.2f} s, {processor:.2f} s of processors, {memory:.0f} MB")
-        with open(outputs[0], "rb") as one, open(outputs[1], "rb") as other:
-            print("bytes:", "the same" if one.read() == other.read() else "different")
+        contents = [open(path, "rb").read() for path in made.values() if os.path.exists(path)]
+        print("bytes:", "the same" if len(contents) > 1 and len(set(contents)) == 1 else "different")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*(os.path.abspath(path) for path in sys.argv[1:]))

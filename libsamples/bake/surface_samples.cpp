@@ -8,8 +8,6 @@
 #include "core/random.h"
 #include "core/work_units.h"
 
-#include <glm/geometric.hpp>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -123,11 +121,6 @@ void takeValues(std::span<SurfaceSample> samples, std::span<const ReferenceValue
 }
 
 } // namespace
-
-std::vector<double> areasOf(const Level& level)
-{
-	return listOf(level.triangles.size(), [&](std::size_t t) { return 0.5 * glm::length(twiceAreaOf(level, t)); });
-}
 
 std::vector<std::size_t> samplesOfTriangles(std::span<const double> areas, std::size_t count)
 {

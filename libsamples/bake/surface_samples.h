@@ -34,9 +34,6 @@ inline const Level& surfaceOf(const Tracer& tracer, const BakeSettings& settings
 	return settings.receivers != nullptr ? *settings.receivers : tracer.level();
 }
 
-// Area of each triangle in square metres.
-std::vector<double> areasOf(const Level& level);
-
 // Distributes `count` points over triangles with these areas: half of them evenly, half by area, at least one each.
 std::vector<std::size_t> samplesOfTriangles(std::span<const double> areas, std::size_t count);
 

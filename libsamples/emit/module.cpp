@@ -4,7 +4,6 @@
 #include "core/lists.h"
 #include "emit/module_parts.h"
 #include "format/arrays.h"
-#include "methods/assets.h"
 #include "methods/kernel_text.h"
 
 #include <algorithm>
@@ -379,12 +378,6 @@ std::string packedText(FunctionWriter& writer, const ModuleEntry& entry)
 		   packing + "(cell, " + value + ");\n}\n";
 }
 
-const KernelText& kernels()
-{
-	static const KernelText text = parseKernels({assets::screen_kernels.begin(), assets::screen_kernels.end()});
-	return text;
-}
-
 // Functions of all methods, with their samples.
 std::string functionsOf(const ModuleSettings& settings, FunctionWriter& writer)
 {
@@ -546,7 +539,7 @@ std::vector<Sample> texelsOf(const ModuleMethod& method)
 
 bool readsNormals(const ModuleSettings& settings)
 {
-	FunctionWriter writer(kernels());
+	FunctionWriter writer(screenKernels());
 	functionsOf(settings, writer);
 	return writer.uses(kNormal);
 }
@@ -558,7 +551,7 @@ std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& contex
 		return moduleWgsl(settings, context);
 	}
 	const bool makes_normals = settings.normals_from_depth && readsNormals(settings);
-	FunctionWriter writer(kernels());
+	FunctionWriter writer(screenKernels());
 	// Functions that inputs depend on come before them, all others after.
 	const std::string of_device = settings.device_depth ? writer.add(kLinear, {}) : "";
 	const std::string of_normals = makes_normals ? writer.add(kNormalFromDepth, {}) : "";

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "methods/passes.h"
 
-#include "methods/assets.h"
 #include "methods/block.h"
 #include "methods/kernel_text.h"
 
@@ -70,19 +69,13 @@ vec4 nookSample(int row, int i)
 
 constexpr std::array<const char*, 3> kTypes{"float", "vec4", "uvec4"}; // indexed by PictureFormat
 
-const KernelText& kernels()
-{
-	static const KernelText text = parseKernels({assets::screen_kernels.begin(), assets::screen_kernels.end()});
-	return text;
-}
-
 } // namespace
 
 std::string glSourceOf(const ShadePass& pass, PictureFormat format)
 {
 	const std::string entry = pass.kernel.call;
 	const std::map<std::string, std::string> constants = constantsOf(pass.block);
-	FunctionWriter writer(kernels());
+	FunctionWriter writer(screenKernels());
 	std::string functions = writer.add("nookRow", constants);
 	functions += renamed(resolved(kSamples, constants), {{"nookVariant", entry + "Variant"}, {"nookSample", entry + "Sample"}});
 	functions += writer.add(entry, constants);

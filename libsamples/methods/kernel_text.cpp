@@ -2,6 +2,7 @@
 #include "methods/kernel_text.h"
 
 #include "core/error.h"
+#include "methods/assets.h"
 
 #include <algorithm>
 #include <regex>
@@ -172,6 +173,12 @@ KernelText parseKernels(const std::vector<std::string_view>& files)
 		}
 	}
 	return kernels;
+}
+
+const KernelText& screenKernels()
+{
+	static const KernelText text = parseKernels({assets::screen_kernels.begin(), assets::screen_kernels.end()});
+	return text;
 }
 
 std::set<std::string> identifiersOf(std::string_view text)

@@ -32,6 +32,9 @@ struct KernelText
 // Throws Error (runtime) for a line that is not part of a comment, macro or function.
 KernelText parseKernels(const std::vector<std::string_view>& files);
 
+// The kernels of all screen-space methods.
+const KernelText& screenKernels();
+
 // All identifiers outside comments, except members after a dot.
 std::set<std::string> identifiersOf(std::string_view text);
 

@@ -31,7 +31,7 @@ public:
 		pass.kernel = kernel;
 		pass.reads = reads;
 		pass.block = block;
-		pass.picture = addPicture({PictureFormat::scalar, m_width, m_height});
+		pass.picture = m_plan.addPicture({PictureFormat::scalar, m_width, m_height});
 		m_plan.passes.push_back(pass);
 	}
 	void draw(const ShadeKernel& kernel)
@@ -45,9 +45,9 @@ public:
 		const int cell = m_method.block.cell;
 		const int area = m_method.block.window * m_method.block.window;
 		PictureShape shape{PictureFormat::scalar, (m_width + cell - 1) / cell, (m_height + cell - 1) / cell};
-		const std::size_t estimate = addPicture(shape);
+		const std::size_t estimate = m_plan.addPicture(shape);
 		shape.format = PictureFormat::quad;
-		const std::array<std::size_t, 2> sums{addPicture(shape), addPicture(shape)};
+		const std::array<std::size_t, 2> sums{m_plan.addPicture(shape), m_plan.addPicture(shape)};
 		for (int i = 0; i < variants; ++i)
 		{
 			ShadePass variant = m_method;
@@ -70,12 +70,6 @@ public:
 	}
 
 private:
-	std::size_t addPicture(const PictureShape& shape)
-	{
-		m_plan.pictures.push_back(shape);
-		return m_plan.pictures.size() - 1;
-	}
-
 	ShadePlan& m_plan;
 	const ShadePass& m_method;
 	int m_width;
@@ -181,12 +175,6 @@ public:
 	}
 
 private:
-	std::size_t addPicture(const PictureShape& shape)
-	{
-		m_plan.pictures.push_back(shape);
-		return m_plan.pictures.size() - 1;
-	}
-
 	ShadePacking packingForFilter() const
 	{
 		switch (m_settings.filter)
@@ -209,7 +197,7 @@ private:
 	{
 		const int cell = m_block.cell;
 		const bool scalar = pass.packing == ShadePacking::none && pass.kernel.function.index() == 0;
-		pass.picture = addPicture(
+		pass.picture = m_plan.addPicture(
 			{scalar ? PictureFormat::scalar : PictureFormat::quad, (m_width + cell - 1) / cell, (m_height + cell - 1) / cell});
 		m_plan.passes.push_back(pass);
 	}
@@ -249,7 +237,7 @@ private:
 	// Makes each level of a picture from the previous one, the first from the depths.
 	std::size_t addLevels(const PictureShape& shape, const ShadeKernel& kernel)
 	{
-		const std::size_t picture = addPicture(shape);
+		const std::size_t picture = m_plan.addPicture(shape);
 		for (int level = 0; level < shape.levels; ++level)
 		{
 			ShadePass pass;

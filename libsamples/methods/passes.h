@@ -70,6 +70,12 @@ struct ShadePlan
 	std::vector<PictureShape> pictures;
 	std::vector<ShadePass> passes; // never empty; the last one fills level 0 of a scalar, the result, or of a quad with bent
 								   // normals in xyz and visibility in w
+
+	std::size_t addPicture(const PictureShape& shape)
+	{
+		pictures.push_back(shape);
+		return pictures.size() - 1;
+	}
 };
 
 // True if the last pass outputs bent normals with visibility.

@@ -61,12 +61,6 @@ public:
 	}
 
 private:
-	std::size_t addPicture(const PictureShape& shape)
-	{
-		m_plan.pictures.push_back(shape);
-		return m_plan.pictures.size() - 1;
-	}
-
 	ShadePass& addPass(ShadeKernel kernel, std::vector<ShadeRead> reads, std::size_t picture)
 	{
 		ShadePass pass;
@@ -82,7 +76,7 @@ private:
 	{
 		int width = partsOf(m_width, kTile);
 		int height = partsOf(m_height, kTile);
-		std::size_t picture = addPicture({PictureFormat::quad, 2 * width, height});
+		std::size_t picture = m_plan.addPicture({PictureFormat::quad, 2 * width, height});
 		addPass({"range", "nookStatRange", &Kernels::nookStatRange}, {}, picture);
 		while (width > 1 || height > 1)
 		{
@@ -90,11 +84,11 @@ private:
 			m_block.range_height = height;
 			width = partsOf(width, kTile);
 			height = partsOf(height, kTile);
-			const std::size_t next = addPicture({PictureFormat::quad, 2 * width, height});
+			const std::size_t next = m_plan.addPicture({PictureFormat::quad, 2 * width, height});
 			addPass({"range", "nookStatRangeUp", &Kernels::nookStatRangeUp}, {{ShadeSlot::levels, picture}}, next);
 			picture = next;
 		}
-		const std::size_t frame = addPicture({PictureFormat::quad, 2, 1});
+		const std::size_t frame = m_plan.addPicture({PictureFormat::quad, 2, 1});
 		addPass({"frame", "nookStatFrame", &Kernels::nookStatFrame}, {{ShadeSlot::levels, picture}}, frame);
 		return frame;
 	}
@@ -103,9 +97,9 @@ private:
 	{
 		PictureShape shape{PictureFormat::counts, partsOf(m_width, m_settings.cell_px) + 1,
 						   partsOf(m_height, m_settings.cell_px) + 1, 1, 1};
-		m_scratch = {addPicture(shape), addPicture(shape)};
+		m_scratch = {m_plan.addPicture(shape), m_plan.addPicture(shape)};
 		shape.layers = tablesOf(m_settings);
-		const std::size_t tables = addPicture(shape);
+		const std::size_t tables = m_plan.addPicture(shape);
 		for (int table = 0; table < shape.layers; ++table)
 		{
 			m_block.table = table;
@@ -156,7 +150,7 @@ private:
 		{
 			levels += 1;
 		}
-		const std::size_t slopes = addPicture({PictureFormat::quad, width, height, levels});
+		const std::size_t slopes = m_plan.addPicture({PictureFormat::quad, width, height, levels});
 		addPass({"slopes", "nookStatSlopes", &Kernels::nookStatSlopes}, {}, slopes);
 		for (int level = 1; level < levels; ++level)
 		{
@@ -164,7 +158,7 @@ private:
 			addPass({"slopes", "nookStatSlopesUp", &Kernels::nookStatSlopesUp}, {{ShadeSlot::levels, slopes}}, slopes).level =
 				level;
 		}
-		const std::size_t flags = addPicture({PictureFormat::scalar, width, height});
+		const std::size_t flags = m_plan.addPicture({PictureFormat::scalar, width, height});
 		addPass({"flags", "nookStatFlags", &Kernels::nookStatFlags}, {{ShadeSlot::levels, slopes}}, flags);
 		return flags;
 	}

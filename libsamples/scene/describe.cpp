@@ -378,8 +378,7 @@ void findComponents(const Level& level, const std::vector<uint32_t>& place, Leve
 
 void findSizes(const Level& level, LevelFacts& facts)
 {
-	std::vector<double> areas =
-		listOf(level.triangles.size(), [&](std::size_t t) { return 0.5 * glm::length(twiceAreaOf(level, t)); });
+	std::vector<double> areas = areasOf(level);
 	std::sort(areas.begin(), areas.end());
 	const double total = std::accumulate(areas.begin(), areas.end(), 0.0);
 	const double coarse_m2 = 0.25 * facts.radius_m * facts.radius_m;

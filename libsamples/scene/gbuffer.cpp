@@ -18,8 +18,7 @@ namespace nook
 
 glm::dvec3 positionOf(const GBuffer& gbuffer, const Projector& projector, int x, int y)
 {
-	const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(gbuffer.width_px) + static_cast<std::size_t>(x);
-	const auto depth = static_cast<double>(gbuffer.depth[pixel]);
+	const auto depth = static_cast<double>(gbuffer.depth[gbuffer.index(x, y)]);
 	assert(std::isfinite(depth));
 	const ViewLine line = projector.lineOf({x + 0.5, y + 0.5});
 	return line.at + depth * line.along;
@@ -91,15 +90,16 @@ public:
 							const int row = static_cast<int>(y);
 							const glm::dvec4 clip =
 								gbuffer.view.projection * glm::dvec4(there(x, row) ? positionAt(x, row) : glm::dvec3(0.0), 1.0);
-							const double depth = static_cast<double>(gbuffer.depth[index(x, row)]);
-							m_affine[index(x, row)] = gbuffer.view.projection[2][3] == 0.0 ? depth : 1.0 / clip.w;
+							const double depth = static_cast<double>(gbuffer.depth[m_gbuffer.index(x, row)]);
+							m_affine[m_gbuffer.index(x, row)] = gbuffer.view.projection[2][3] == 0.0 ? depth : 1.0 / clip.w;
 						}
 					});
 	}
 
 	bool there(int x, int y) const
 	{
-		return x >= 0 && y >= 0 && x < m_gbuffer.width_px && y < m_gbuffer.height_px && std::isfinite(m_gbuffer.depth[index(x, y)]);
+		return x >= 0 && y >= 0 && x < m_gbuffer.width_px && y < m_gbuffer.height_px &&
+			   std::isfinite(m_gbuffer.depth[m_gbuffer.index(x, y)]);
 	}
 
 	// Unit, facing the camera. Requires there(x, y).
@@ -127,11 +127,6 @@ public:
 	}
 
 private:
-	std::size_t index(int x, int y) const
-	{
-		return static_cast<std::size_t>(y) * static_cast<std::size_t>(m_gbuffer.width_px) + static_cast<std::size_t>(x);
-	}
-
 	glm::dvec3 positionAt(int x, int y) const
 	{
 		return positionOf(m_gbuffer, m_projector, x, y);
@@ -140,14 +135,14 @@ private:
 	// How badly the side (dx, dy) continues to the pixel; requires the nearer neighbour.
 	double misfit(int x, int y, int dx, int dy) const
 	{
-		const double here = m_affine[index(x, y)];
-		const double near = m_affine[index(x + dx, y + dy)];
+		const double here = m_affine[m_gbuffer.index(x, y)];
+		const double near = m_affine[m_gbuffer.index(x + dx, y + dy)];
 		const double step = std::fabs(near - here);
 		if (!there(x + 2 * dx, y + 2 * dy))
 		{
 			return step;
 		}
-		return std::min(step, std::fabs(2.0 * near - m_affine[index(x + 2 * dx, y + 2 * dy)] - here));
+		return std::min(step, std::fabs(2.0 * near - m_affine[m_gbuffer.index(x + 2 * dx, y + 2 * dy)] - here));
 	}
 
 	// The surface's step in the positive direction of an axis; 0 if neither neighbour exists.
@@ -156,7 +151,7 @@ private:
 		const bool after = there(x + dx, y + dy);
 		const bool before = there(x - dx, y - dy);
 		constexpr double kRounding = 2e-6; // several steps of the 32-bit floats that kernels compute with
-		const double tie = kRounding * std::fabs(m_affine[index(x, y)]);
+		const double tie = kRounding * std::fabs(m_affine[m_gbuffer.index(x, y)]);
 		if (after && (!before || misfit(x, y, dx, dy) <= misfit(x, y, -dx, -dy) + tie))
 		{
 			return positionAt(x + dx, y + dy) - position;

@@ -29,6 +29,11 @@ struct GBuffer
 	std::vector<glm::vec3> normals; // view space, unit; 0 for sky; empty: none yet. Ours face the camera; an engine's are unchanged
 									// (normal maps and smooth shading turn some slightly away)
 	std::vector<float> depth_error_m{}; // upper bound by which a depth may be too large, ≥ 0; empty: only its rounding to 32 bits
+
+	std::size_t index(int x, int y) const
+	{
+		return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px) + static_cast<std::size_t>(x);
+	}
 };
 
 enum class NormalKind

@@ -58,6 +58,17 @@ glm::dvec3 twiceAreaOf(const Level& level, std::size_t triangle)
 	return glm::cross(level.positions[corner.y] - a, level.positions[corner.z] - a);
 }
 
+std::vector<double> areasOf(const Level& level)
+{
+	std::vector<double> areas;
+	areas.reserve(level.triangles.size());
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
+	{
+		areas.push_back(0.5 * glm::length(twiceAreaOf(level, t)));
+	}
+	return areas;
+}
+
 glm::dvec3 geometricNormal(const Level& level, uint32_t triangle)
 {
 	return glm::normalize(twiceAreaOf(level, triangle));

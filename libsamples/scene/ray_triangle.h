@@ -40,6 +40,9 @@ LargerTriangle enlarge(const Level& level, uint32_t triangle, double by_m);
 // The counter-clockwise normal, twice as long as the triangle's area.
 glm::dvec3 twiceAreaOf(const Level& level, std::size_t triangle);
 
+// Area of each triangle in square metres.
+std::vector<double> areasOf(const Level& level);
+
 // Shading normals at a position on a triangle.
 
 // Unit normal of the counter-clockwise side. Requires a triangle with area.

@@ -289,8 +289,7 @@ struct PixelPoints
 
 	ReferencePoint operator()(int x, int y) const
 	{
-		const std::size_t pixel =
-			static_cast<std::size_t>(y) * static_cast<std::size_t>(gbuffer.width_px) + static_cast<std::size_t>(x);
+		const std::size_t pixel = gbuffer.index(x, y);
 		const ViewLine line = projector.lineOf({x + 0.5, y + 0.5});
 		const auto depth_m = static_cast<double>(gbuffer.depth[pixel]);
 		const glm::dvec3 normal(gbuffer.normals[pixel]);
@@ -524,7 +523,7 @@ DepthMatter::DepthMatter(const GBuffer& gbuffer, const RunSettings& run)
 	{
 		for (int x = 0; x < m_width_px; ++x)
 		{
-			const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(m_width_px) + static_cast<std::size_t>(x);
+			const std::size_t pixel = gbuffer.index(x, y);
 			if (!std::isfinite(gbuffer.depth[pixel]))
 			{
 				m_planes[pixel] = {{0.0, 0.0, 0.0}, -1.0}; // no matter

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rays with Embree 3 (I. Wald, S. Woop, C. Benthin, G. Johnson, M. Ernst, "Embree: A Kernel Framework for Efficient CPU Ray
+// Rays with Embree 3 or 4 (I. Wald, S. Woop, C. Benthin, G. Johnson, M. Ernst, "Embree: A Kernel Framework for Efficient CPU Ray
 // Tracing", 2014).
 //
 // Rays are traced in 32 bits relative to the centre of the level's bounds; R is the largest coordinate there. The error of the
@@ -40,7 +40,7 @@ template <class Ray> std::vector<Ray>& scratch()
 tracing::Bundle bundleOf(glm::dvec3 origin, double reach, float surely)
 {
 	tracing::Bundle bundle{{}, origin, reach, surely, nullptr, {}, false, {}};
-	rtcInitIntersectContext(&bundle.embrees);
+	rtcInitRayQueryContext(&bundle.embrees);
 	return bundle;
 }
 
@@ -53,6 +53,38 @@ RTCRay& withoutHit(RTCRayHit& ray)
 	ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
 	ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 	return ray.ray;
+}
+
+// Traces the rays of a bundle: RTCRayHit to the nearest hit, RTCRay to any. The rays of one hemisphere differ in direction: on
+// Embree 3.13 the stream of single rays is 1.3 to 1.9 times as fast as packets or the coherent stream (nook_bench_rays measures all
+// forms).
+void trace(RTCScene scene, tracing::Bundle& bundle, std::span<RTCRayHit> rays)
+{
+#if RTC_VERSION_MAJOR >= 4 // without streams
+	RTCIntersectArguments arguments;
+	rtcInitIntersectArguments(&arguments);
+	arguments.context = &bundle.embrees;
+	for (RTCRayHit& ray : rays)
+	{
+		rtcIntersect1(scene, &ray, &arguments);
+	}
+#else
+	rtcIntersect1M(scene, &bundle.embrees, rays.data(), static_cast<unsigned>(rays.size()), sizeof(RTCRayHit));
+#endif
+}
+void trace(RTCScene scene, tracing::Bundle& bundle, std::span<RTCRay> rays)
+{
+#if RTC_VERSION_MAJOR >= 4 // without streams
+	RTCOccludedArguments arguments;
+	rtcInitOccludedArguments(&arguments);
+	arguments.context = &bundle.embrees;
+	for (RTCRay& ray : rays)
+	{
+		rtcOccluded1(scene, &ray, &arguments);
+	}
+#else
+	rtcOccluded1M(scene, &bundle.embrees, rays.data(), static_cast<unsigned>(rays.size()), sizeof(RTCRay));
+#endif
 }
 
 // Result of a point query around a hit.
@@ -147,7 +179,7 @@ RayHit Tracer::nearest(glm::dvec3 origin, glm::dvec3 direction, double reach) co
 	withoutHit(ray) = m_data->rayOf(origin, direction, reach + slack);
 	tracing::Bundle bundle = bundleOf(origin, reach, static_cast<float>(reach - slack));
 	bundle.direction = direction;
-	rtcIntersect1(m_data->scene, &bundle.embrees, &ray);
+	trace(m_data->scene, bundle, std::span(&ray, 1));
 	return ray.hit.geomID == RTC_INVALID_GEOMETRY_ID ? RayHit{} : m_data->refine(origin, direction, ray);
 }
 
@@ -180,9 +212,6 @@ tracing::Bundle Tracer::Data::aim(std::vector<Ray>& rays, glm::dvec3 origin, con
 	}
 	tracing::Bundle bundle = bundleOf(origin, static_cast<double>(reach), reach - most);
 	bundle.directions = &directions;
-	// The rays of one hemisphere differ in direction: on Embree 3.13 the stream of single rays is 1.3 to 1.9 times as fast as
-	// packets or the coherent stream (nook_bench_rays measures all forms).
-	bundle.embrees.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
 	return bundle;
 }
 
@@ -194,7 +223,7 @@ std::span<const tracing::Met> Tracer::Data::nearestOf(glm::dvec3 origin, const D
 	met.assign(directions.x.size(), {});
 	tracing::Bundle bundle = aim(rays, origin, directions, reach);
 	bundle.met = met;
-	rtcIntersect1M(scene, &bundle.embrees, rays.data(), static_cast<unsigned>(met.size()), sizeof(RTCRayHit));
+	trace(scene, bundle, std::span(rays.data(), met.size()));
 	for (std::size_t i = 0; i < met.size(); ++i)
 	{
 		if (met[i].hit)
@@ -228,7 +257,7 @@ void Tracer::blocked(glm::dvec3 origin, const Directions& directions, float reac
 {
 	std::vector<RTCRay>& rays = scratch<RTCRay>();
 	tracing::Bundle bundle = m_data->aim(rays, origin, directions, reach);
-	rtcOccluded1M(m_data->scene, &bundle.embrees, rays.data(), static_cast<unsigned>(blocked.size()), sizeof(RTCRay));
+	trace(m_data->scene, bundle, std::span(rays.data(), blocked.size()));
 	std::transform(rays.begin(), rays.begin() + static_cast<std::ptrdiff_t>(blocked.size()), blocked.begin(),
 				   [](const RTCRay& ray) { return ray.tfar < 0.0F ? uint8_t{1} : uint8_t{0}; });
 }
@@ -241,7 +270,7 @@ bool Tracer::blocked(glm::dvec3 from, glm::dvec3 to) const
 	tracing::Bundle bundle = bundleOf(from, 1.0, static_cast<float>(1.0 - slack));
 	bundle.direction = way;
 	bundle.passes_masks = true;
-	rtcOccluded1(m_data->scene, &bundle.embrees, &ray);
+	trace(m_data->scene, bundle, std::span(&ray, 1));
 	return ray.tfar < 0.0F;
 }
 

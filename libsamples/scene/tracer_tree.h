@@ -3,7 +3,14 @@
 #pragma once
 
 #include "scene/tracer.h"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+using RTCRayQueryContext = RTCIntersectContext; // Embree 4's names
+#define rtcInitRayQueryContext rtcInitIntersectContext
+#endif
 
 #include <limits>
 #include <span>
@@ -38,7 +45,7 @@ struct Met
 // Passed to Embree's filters: the rays in double.
 struct Bundle
 {
-	RTCIntersectContext embrees; // must be first: Embree only knows this member
+	RTCRayQueryContext embrees; // must be first: Embree only knows this member
 	glm::dvec3 origin{0.0};
 	double reach = 0.0;
 	float surely = 0.0F;                    // within reach for any rounding

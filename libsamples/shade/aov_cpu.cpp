@@ -46,12 +46,12 @@ public:
 
 	bool any(int x, int y) const
 	{
-		return std::isfinite(m_gbuffer.depth[index(x, y)]);
+		return std::isfinite(m_gbuffer.depth[m_gbuffer.index(x, y)]);
 	}
 
 	Receiver at(int x, int y) const
 	{
-		const std::size_t i = index(x, y);
+		const std::size_t i = m_gbuffer.index(x, y);
 		const double rounding_m = m_gbuffer.depth_error_m.empty() ? static_cast<double>(m_gbuffer.depth[i]) * kUnitRoundoff
 																  : static_cast<double>(m_gbuffer.depth_error_m[i]);
 		return {glm::dvec3(m_world_from_camera * glm::dvec4(positionOf(m_gbuffer, m_projector, x, y), 1.0)),
@@ -60,11 +60,6 @@ public:
 	}
 
 private:
-	std::size_t index(int x, int y) const
-	{
-		return static_cast<std::size_t>(y) * static_cast<std::size_t>(m_gbuffer.width_px) + static_cast<std::size_t>(x);
-	}
-
 	const GBuffer& m_gbuffer;
 	Projector m_projector;
 	glm::dmat4 m_world_from_camera;

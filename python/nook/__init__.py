@@ -172,15 +172,16 @@ class _Options:
 
         if main:
             thread = threading.Thread(target=call, daemon=True)
-            thread.start()
-            interrupted = None
-            while not done.is_set():
-                try:
-                    done.wait(0.1)
-                except BaseException as interrupt:
-                    self.cancelled = True
-                    interrupted = interrupt
-            self.failure = interrupted or self.failure
+            try:
+                thread.start()
+                while not done.wait(0.1):
+                    pass
+            except BaseException as interrupt:  # wherever it comes, the thread has to stop, and ends before its arrays do
+                self.cancelled = True
+                self.failure = interrupt
+                if thread.ident is None:
+                    raise
+                done.wait()
         else:
             call()
         status, text = answer[0]

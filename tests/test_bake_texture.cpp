@@ -52,7 +52,13 @@ TEST_CASE("bake: a texture agrees with rays, and charts do not bleed", "[bake]")
 	const Level level = floorAndBoxWithCharts();
 	const Tracer tracer(level, {});
 	const BakeSettings settings = within(0.5);
-	const TextureBake bake = bakeTexture(tracer, level.uvs, 128, settings, {});
+	const auto bakeWith = [&](int threads)
+	{
+		std::vector<TextureBake> pages{bakeTexture(tracer, level.uvs, 128, settings, {threads, {}})};
+		finishTextures(level, level.uvs, {}, pages, threads);
+		return pages.front();
+	};
+	const TextureBake bake = bakeWith(1);
 	CHECK(bake.charts == 7);
 	CHECK(bake.missed == 0);
 	CHECK(bake.shared == 0);
@@ -62,10 +68,82 @@ TEST_CASE("bake: a texture agrees with rays, and charts do not bleed", "[bake]")
 	CAPTURE(check.rmse, check.bias);
 	CHECK(check.rmse < 0.04);
 	CHECK(std::fabs(check.bias) < 0.005);
-	CHECK(bakeTexture(tracer, level.uvs, 128, settings, {2, {}}).values == bake.values);
+	CHECK(bakeWith(2).values == bake.values);
 	// The floor's corner is open, and so are the texels just outside its chart.
 	CHECK(bake.values[0] > 230);
 	CHECK(bake.values[128 + 1] > 230);
+}
+
+TEST_CASE("bake: both sides of a smooth seam have the same values, and creases stay sharp", "[bake]")
+{
+	// A floor of two halves with charts of their own, one of them turned by 90 degrees and smaller, and a wall at the end of the
+	// other.
+	Level level = emptyLevel();
+	addQuad(level, {-1.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, -2.0});
+	addQuad(level, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, -2.0});
+	addQuad(level, {-1.0, 0.0, -1.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
+	const auto place = [&level](std::size_t quad, glm::vec2 corner, glm::vec2 u, glm::vec2 v)
+	{
+		for (std::size_t i = 4 * quad; i < 4 * quad + 4; ++i)
+		{
+			level.uvs[i] = corner + level.uvs[i].x * u + level.uvs[i].y * v;
+		}
+	};
+	place(0, {0.05F, 0.05F}, {0.24F, 0.0F}, {0.0F, 0.48F});
+	place(1, {0.9F, 0.05F}, {0.0F, 0.2F}, {-0.4F, 0.0F});
+	place(2, {0.05F, 0.6F}, {0.6F, 0.0F}, {0.0F, 0.3F});
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(0.5);
+	settings.rays = 16; // noise that differs on both sides
+	std::vector<TextureBake> joined{bakeTexture(tracer, level.uvs, 128, settings, {})};
+	TextureBake apart = joined.front();
+	fillEmpty(apart.texels, 128);
+	finishTextures(level, level.uvs, {}, joined, 1);
+	const auto valueAt = [](const TextureBake& bake, glm::vec2 uv)
+	{
+		const glm::vec2 at = 128.0F * uv - 0.5F;
+		const glm::vec2 low(std::floor(at.x), std::floor(at.y));
+		const auto texel = [&](int x, int y)
+		{
+			return bake.texels[static_cast<std::size_t>((static_cast<int>(low.y) + y) * 128 + static_cast<int>(low.x) + x)];
+		};
+		const glm::vec2 f = at - low;
+		return (texel(0, 0) * (1.0F - f.x) + texel(1, 0) * f.x) * (1.0F - f.y) +
+			   (texel(0, 1) * (1.0F - f.x) + texel(1, 1) * f.x) * f.y;
+	};
+	// The largest difference along the edge from one vertex to another of each side.
+	const auto differenceOf = [&](const TextureBake& bake, std::size_t a, std::size_t b, std::size_t c, std::size_t d)
+	{
+		float most = 0.0F;
+		for (int i = 0; i <= 1000; ++i)
+		{
+			const float share = static_cast<float>(i) / 1000.0F;
+			most = std::max(most, std::fabs(valueAt(bake, level.uvs[a] + share * (level.uvs[b] - level.uvs[a])) -
+											valueAt(bake, level.uvs[c] + share * (level.uvs[d] - level.uvs[c]))));
+		}
+		return most;
+	};
+	const auto vertexAt = [&](std::size_t quad, glm::dvec3 position)
+	{
+		std::size_t i = 4 * quad;
+		while (level.positions[i] != position)
+		{
+			++i;
+		}
+		return i;
+	};
+	const auto alongFloor = [&](const TextureBake& bake)
+	{
+		return differenceOf(bake, vertexAt(0, {0.0, 0.0, 1.0}), vertexAt(0, {0.0, 0.0, -1.0}), vertexAt(1, {0.0, 0.0, 1.0}),
+							vertexAt(1, {0.0, 0.0, -1.0}));
+	};
+	CHECK(alongFloor(apart) > 0.1F);
+	CHECK(alongFloor(joined.front()) < 0.02F);
+	for (std::size_t row = 78; row < 114; ++row) // inside the wall's chart
+	{
+		const auto first = static_cast<std::ptrdiff_t>(128 * row + 8);
+		CHECK(std::equal(apart.texels.begin() + first, apart.texels.begin() + first + 72, joined.front().texels.begin() + first));
+	}
 }
 
 TEST_CASE("bake: coordinates that cannot carry a texture are refused", "[bake]")

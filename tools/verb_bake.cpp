@@ -643,6 +643,7 @@ Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& fa
 	std::vector<uint32_t> page_of = unwrapped.page_of;
 	std::erase(page_of, kNoPage);
 	settings.receivers = &solid.level;
+	finishTextures(solid.level, solid.level.uvs, page_of, pages, how.threads);
 	const BakeCheck check = checkTexture(input.tracer, solid.level.uvs, pages, page_of, settings, kCheckPoints, how);
 	if (isShare(how))
 	{
@@ -688,7 +689,8 @@ Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& fact
 		of_file = loadSecondUvs(options.level.level, options.level.load, level, how, set);
 	}
 	const std::vector<glm::vec2>& uvs = of_file.empty() ? level.uvs : of_file;
-	const std::vector<TextureBake> pages{bakeTexture(input.tracer, uvs, options.texture_px, settings, how)};
+	std::vector<TextureBake> pages{bakeTexture(input.tracer, uvs, options.texture_px, settings, how)};
+	finishTextures(level, uvs, {}, pages, how.threads);
 	const BakeCheck check = checkTexture(input.tracer, uvs, pages, {}, settings, kCheckPoints, how);
 	if (isShare(how))
 	{

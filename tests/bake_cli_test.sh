@@ -329,7 +329,17 @@ works '' bake kept_still.obj --radius 1 --rays 32 --receivers '*' -o b.glb --jso
 works '"occluders": ."[*]".' bake builtin:cornell --radius 1 --probes 1 --rays 6 --occluders '*' --json -
 there b.glb s.json
 fails 1 '--receivers: found with --max-error' bake kept_parts.gltf --radius 1 --receivers low --max-error 0.1 -o b.glb
-fails 1 '--receivers: found with --texture' bake kept_parts.gltf --radius 1 --receivers low --texture 64 -o b.glb
+for how in --unwrap '--to texture'; do
+	# shellcheck disable=SC2086 # words
+	works '' bake kept_parts.gltf --radius 1 --rays 4 --receivers extras:kind=floor $how --texture 64 -o b.gltf --json s.json
+	checks=$((checks + 1))
+	found=$(grep -o '"mesh": [0-9]\|"material": [0-9]\|occlusionTexture' b.gltf | tr '\n' ' ')
+	[ "$found" = '"mesh": 1 "mesh": 0 occlusionTexture occlusionTexture "material": 0 "material": 1 ' ] ||
+		problem "--receivers $how: found '$found', expected a mesh and a material for the receiver alone"
+done
+works '"receivers": ."[*]".' bake kept_box.obj --radius 1 --rays 4 --receivers '*' --texture 64 -o b.glb --json -
+works '"probes": ' bake kept_parts.gltf --radius 1 --rays 6 --receivers extras:kind=floor --probes 0.5 --json -
+there b.glb b.gltf s.json
 fails 1 "--ignore: found 'a,,b', expected patterns of parts" bake kept_parts.gltf --radius 1 --ignore a,,b -o b.glb
 fails 1 "--occluders: found 'material:x', expected parts of" bake kept_parts.gltf --radius 1 --occluders material:x -o b.glb
 fails 1 "--receivers: found 'extras:kind=wall', expected parts of kept_parts.gltf: 'extras:kind=floor'" bake kept_parts.gltf --radius 1 --receivers extras:kind=wall -o b.glb

@@ -168,8 +168,9 @@ void declare(CLI::App& app, BakeOptions& options)
 		 partsRow("--occluders", options.occluders,
 				  "The only parts of the level that rays meet, chosen as by --ignore (default: all)"),
 		 partsRow("--receivers", options.receivers,
-				  "The only parts that get values, chosen as by --ignore; the others stay as they are (default: all)",
-				  ofVertices({{"--max-error", "one of them, since the file of split triangles has all parts"}})),
+				  "The only parts that get values, chosen as by --ignore, or whose box has probes; the others stay as they are "
+				  "(default: all)",
+				  excludes("--max-error", "one of them, since the file of split triangles has all parts")),
 		 {"--from",
 		  takesText(options.from, "FILE"),
 		  "A detailed level that this one stands for: values are those of its surface, and rays meet it alone",
@@ -429,7 +430,9 @@ GltfFile fileOf(const BakeOptions& options, const BakeInput& input, const Level&
 		places = loadPlaces(options.level.level, options.level.load, input.level(), options.receivers, how, as_read);
 		return fileOf(options);
 	}
-	return openGlb(levelGlb(level, kProgram, places), level.name);
+	GltfFile file = openGlb(levelGlb(level, kProgram, places), level.name);
+	std::erase_if(places, [&input](const GltfPlace& place) { return input.part && input.receivers[place.triangle] == 0; });
+	return file;
 }
 
 // Adds values to the level's file, or to a file made of the level.
@@ -441,10 +444,6 @@ GltfBaked write(const BakeOptions& options, const BakeInput& input, const Level&
 	std::erase_if(outputs, isValues);
 	outputs.resize(std::max<std::size_t>(outputs.size(), 1), "-"); // its size is reported in any case
 	const GltfFile file = fileOf(options, input, input.part ? input.level() : level, places, nullptr, how);
-	if (!input.in_place)
-	{
-		std::erase_if(places, [&input](const GltfPlace& place) { return input.part && input.receivers[place.triangle] == 0; });
-	}
 	for (std::size_t i = 0; input.part && i < places.size(); ++i)
 	{
 		for (auto& [of_file, of_level] : places[i].vertices)
@@ -677,16 +676,27 @@ Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& fa
 
 Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& facts, const RunSettings& how)
 {
-	const Level& level = input.level();
+	const Level& level = input.part ? input.part->level : input.level();
 	BakeSettings settings = options.settings;
 	settings.receivers = &level;
 	uint32_t set = 1;
-	std::vector<glm::vec2> of_file = loadSecondUvs(options.level.level, options.level.load, level, how, set);
+	std::vector<glm::vec2> of_file = loadSecondUvs(options.level.level, options.level.load, input.level(), how, set);
 	const bool second = !of_file.empty();
 	if (!second && input.in_place)
 	{
 		set = 0;
-		of_file = loadSecondUvs(options.level.level, options.level.load, level, how, set);
+		of_file = loadSecondUvs(options.level.level, options.level.load, input.level(), how, set);
+	}
+	if (input.part && !of_file.empty())
+	{
+		const std::vector<glm::vec2> of_level = std::exchange(of_file, std::vector<glm::vec2>(level.positions.size()));
+		for (std::size_t v = 0; v < of_level.size(); ++v)
+		{
+			if (input.part->vertices[v] != UINT32_MAX)
+			{
+				of_file[input.part->vertices[v]] = of_level[v];
+			}
+		}
 	}
 	const std::vector<glm::vec2>& uvs = of_file.empty() ? level.uvs : of_file;
 	std::vector<TextureBake> pages{bakeTexture(input.tracer, uvs, options.texture_px, settings, how)};
@@ -715,10 +725,12 @@ Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& fact
 	return made;
 }
 
-Made makeProbes(const BakeOptions& options, const Tracer& tracer, Facts& facts, const RunSettings& how)
+Made makeProbes(const BakeOptions& options, const BakeInput& input, Facts& facts, const RunSettings& how)
 {
-	const ProbeGrid grid = bakeProbes(tracer, options.probes_m, options.settings, how);
-	const BakeCheck check = checkProbes(tracer, grid, options.settings, kCheckPoints, how);
+	BakeSettings settings = options.settings;
+	settings.receivers = input.part ? &input.part->level : nullptr;
+	const ProbeGrid grid = bakeProbes(input.tracer, options.probes_m, settings, how);
+	const BakeCheck check = checkProbes(input.tracer, grid, settings, kCheckPoints, how);
 	if (isShare(how))
 	{
 		return {};
@@ -825,7 +837,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 	addLevelFacts(facts, loaded);
 	facts.whole("turned_triangles", turned);
 	addSettings(facts, options);
-	const Made made = probes                   ? makeProbes(options, input.tracer, facts, how)
+	const Made made = probes                   ? makeProbes(options, input, facts, how)
 					  : options.unwrap         ? makeUnwrapped(options, input, facts, how)
 					  : options.texture_px > 0 ? makeTexture(options, input, facts, how)
 											   : makeVertices(options, input, facts, how);

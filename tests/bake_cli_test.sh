@@ -99,6 +99,11 @@ fails 3 'kept_overlap.obj: texture coordinates: found triangles that overlap' ba
 fails 3 'kept_outside.obj: texture coordinates: found some from' bake kept_outside.obj --radius 1 --texture 64 -o t.glb
 fails 3 'kept_without.obj: texture coordinates: found none' bake kept_without.obj --radius 1 --texture 64 -o t.glb
 fails 3 'builtin:cornell: texture coordinates: found' bake builtin:cornell --radius 1 --texture 64 -o t.glb
+works '"png_bytes": ' bake kept_box.obj --radius 0.5 --texture 64 --rays 16 -o p.exr -o p.png -o t.glb -o p.ktx2 --json -
+checks=$((checks + 1))
+[ "$(wc -c <p.ktx2)" -gt $((8 * (256 + 64 + 16 + 4 + 1 + 1 + 1))) ] || problem "p.ktx2: found $(wc -c <p.ktx2) bytes, expected seven levels"
+there p.exr p.ktx2 p.png t.glb
+fails 1 'p.png: found' bake kept_box.obj --radius 0.5 -o p.png
 for size in 0 15 8193 65536 -1 1e3; do
 	fails 1 '--texture: found' bake kept_box.obj --radius 1 --texture $size -o t.glb
 done
@@ -283,6 +288,11 @@ sed 's/kept_[uv].gltf/kept_two.gltf/' kept_v.gltf >b.gltf
 sed 's/kept_[uv].gltf/kept_two.gltf/' kept_u.gltf | cmp -s - b.gltf || problem "--unwrap again: found another file than once"
 works '"pages": [23],' bake kept_two.gltf --radius 1 --rays 8 --unwrap --texture 32 --texel-size 0.1 --pages 4 --margin 1 -o kept_w.glb --json -
 unwrapped kept_two.gltf kept_w.glb
+works '' bake kept_two.gltf --radius 1 --rays 8 --unwrap --texture 32 --texel-size 0.1 --pages 4 --margin 1 -o b.png -o b.glb --json s.json
+checks=$((checks + 1))
+[ -s b-1.png ] && [ -s b-2.png ] && [ -s b.glb ] || problem "--pages: found $(echo b*), expected a picture for each page"
+rm -f b-*.png
+fails 1 '--unwrap: found only textures to write' bake kept_two.gltf --radius 1 --unwrap -o b.png
 works '"texels_across": 128,' bake kept_two.gltf --radius 1 --rays 8 --unwrap --texel-size 0.03 -o b.glb --json -
 works '^level: kept_w.glb, 4 triangles' info kept_w.glb --allow-outside
 works '' bake kept_u.gltf --radius 1 --rays 8 -o kept_v.gltf --json s.json

@@ -146,6 +146,57 @@ TEST_CASE("bake: both sides of a smooth seam have the same values, and creases s
 	}
 }
 
+TEST_CASE("bake: a texture in blocks has the values of the texture, and mipmaps their means", "[bake]")
+{
+	constexpr int kSize = 18; // no multiple of four
+	TextureBake bake;
+	bake.size_px = kSize;
+	for (int i = 0; i < kSize * kSize; ++i)
+	{
+		bake.texels.push_back(0.02F * static_cast<float>(i % kSize) + 0.03F * static_cast<float>(i / kSize)); // up to 0.85
+	}
+	const std::string file = textureFile(bake, ".ktx2", "nook test");
+	const auto numberAt = [&file](std::size_t at, std::size_t width)
+	{
+		uint64_t number = 0;
+		for (std::size_t i = width; i-- > 0;)
+		{
+			number = number << 8U | static_cast<uint8_t>(file.at(at + i));
+		}
+		return number;
+	};
+	REQUIRE(numberAt(40, 4) == 5); // levels: 18, 9, 4, 2, 1
+	std::size_t end = file.size();
+	for (std::size_t level = 0, size = kSize; level < 5; ++level, size /= 2)
+	{
+		const std::size_t begin = numberAt(80 + 24 * level, 8);
+		const std::size_t across = (size + 3) / 4;
+		REQUIRE(begin % 8 == 0);
+		REQUIRE(numberAt(88 + 24 * level, 8) == 8 * across * across);
+		CHECK(begin + 8 * across * across == end); // the largest comes last
+		end = begin;
+		double worst = 0.0;
+		double sum = 0.0;
+		for (std::size_t i = 0; i < size * size; ++i)
+		{
+			const std::size_t x = i % size;
+			const std::size_t y = i / size;
+			const uint64_t block = numberAt(begin + 8 * (y / 4 * across + x / 4), 8);
+			const double first = static_cast<double>(block & 255U);
+			const double last = static_cast<double>(block >> 8U & 255U);
+			const uint64_t index = block >> (16 + 3 * (y % 4 * 4 + x % 4)) & 7U;
+			const double share = index == 0 ? 0.0 : index == 1 ? 1.0 : static_cast<double>(index - 1) / 7.0;
+			const double value = (first + share * (last - first)) / 255.0;
+			sum += value / static_cast<double>(size * size);
+			worst = std::max(worst, level == 0 ? std::fabs(value - static_cast<double>(bake.texels[i])) : 0.0);
+		}
+		CHECK(worst < 0.5 * 0.15 / 7.0 + 0.003); // half a step of a block's range, and its ends in eight bits
+		CHECK(sum == Approx(0.425).margin(0.01));
+	}
+	CHECK(end > 200);
+	CHECK(textureFile(bake, ".exr", "nook test").size() > 4);
+}
+
 TEST_CASE("bake: coordinates that cannot carry a texture are refused", "[bake]")
 {
 	const auto refused = [](const Level& level, const char* words)

@@ -8,6 +8,8 @@
 #include <glm/vec2.hpp>
 
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace nook
@@ -41,6 +43,9 @@ TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, in
 // the first.
 void finishTextures(const Level& level, std::span<const glm::vec2> uvs, std::span<const uint32_t> page_of,
 					std::vector<TextureBake>& pages, int threads);
+
+// A finished texture as a file: ".png" in 8 bits, ".exr" in 32 bits, ".ktx2" in blocks (BC4) with all mipmaps. `writer`: of KTX2.
+std::string textureFile(const TextureBake& bake, std::string_view ending, std::string_view writer);
 
 // Like checkBake, for the texture sampled bilinearly as by a texture unit.
 BakeCheck checkTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, std::span<const TextureBake> pages,

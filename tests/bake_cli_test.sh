@@ -99,6 +99,11 @@ fails 3 'kept_overlap.obj: texture coordinates: found triangles that overlap' ba
 fails 3 'kept_outside.obj: texture coordinates: found some from' bake kept_outside.obj --radius 1 --texture 64 -o t.glb
 fails 3 'kept_without.obj: texture coordinates: found none' bake kept_without.obj --radius 1 --texture 64 -o t.glb
 fails 3 'builtin:cornell: texture coordinates: found' bake builtin:cornell --radius 1 --texture 64 -o t.glb
+works '"png_bytes": ' bake kept_box.obj --radius 0.5 --texture 64 --rays 16 -o p.exr -o p.png -o t.glb -o p.ktx2 --json -
+checks=$((checks + 1))
+[ "$(wc -c <p.ktx2)" -gt $((8 * (256 + 64 + 16 + 4 + 1 + 1 + 1))) ] || problem "p.ktx2: found $(wc -c <p.ktx2) bytes, expected seven levels"
+there p.exr p.ktx2 p.png t.glb
+fails 1 'p.png: found' bake kept_box.obj --radius 0.5 -o p.png
 for size in 0 15 8193 65536 -1 1e3; do
 	fails 1 '--texture: found' bake kept_box.obj --radius 1 --texture $size -o t.glb
 done
@@ -283,6 +288,11 @@ sed 's/kept_[uv].gltf/kept_two.gltf/' kept_v.gltf >b.gltf
 sed 's/kept_[uv].gltf/kept_two.gltf/' kept_u.gltf | cmp -s - b.gltf || problem "--unwrap again: found another file than once"
 works '"pages": [23],' bake kept_two.gltf --radius 1 --rays 8 --unwrap --texture 32 --texel-size 0.1 --pages 4 --margin 1 -o kept_w.glb --json -
 unwrapped kept_two.gltf kept_w.glb
+works '' bake kept_two.gltf --radius 1 --rays 8 --unwrap --texture 32 --texel-size 0.1 --pages 4 --margin 1 -o b.png -o b.glb --json s.json
+checks=$((checks + 1))
+[ -s b-1.png ] && [ -s b-2.png ] && [ -s b.glb ] || problem "--pages: found $(echo b*), expected a picture for each page"
+rm -f b-*.png
+fails 1 '--unwrap: found only textures to write' bake kept_two.gltf --radius 1 --unwrap -o b.png
 works '"texels_across": 128,' bake kept_two.gltf --radius 1 --rays 8 --unwrap --texel-size 0.03 -o b.glb --json -
 works '^level: kept_w.glb, 4 triangles' info kept_w.glb --allow-outside
 works '' bake kept_u.gltf --radius 1 --rays 8 -o kept_v.gltf --json s.json
@@ -329,7 +339,17 @@ works '' bake kept_still.obj --radius 1 --rays 32 --receivers '*' -o b.glb --jso
 works '"occluders": ."[*]".' bake builtin:cornell --radius 1 --probes 1 --rays 6 --occluders '*' --json -
 there b.glb s.json
 fails 1 '--receivers: found with --max-error' bake kept_parts.gltf --radius 1 --receivers low --max-error 0.1 -o b.glb
-fails 1 '--receivers: found with --texture' bake kept_parts.gltf --radius 1 --receivers low --texture 64 -o b.glb
+for how in --unwrap '--to texture'; do
+	# shellcheck disable=SC2086 # words
+	works '' bake kept_parts.gltf --radius 1 --rays 4 --receivers extras:kind=floor $how --texture 64 -o b.gltf --json s.json
+	checks=$((checks + 1))
+	found=$(grep -o '"mesh": [0-9]\|"material": [0-9]\|occlusionTexture' b.gltf | tr '\n' ' ')
+	[ "$found" = '"mesh": 1 "mesh": 0 occlusionTexture occlusionTexture "material": 0 "material": 1 ' ] ||
+		problem "--receivers $how: found '$found', expected a mesh and a material for the receiver alone"
+done
+works '"receivers": ."[*]".' bake kept_box.obj --radius 1 --rays 4 --receivers '*' --texture 64 -o b.glb --json -
+works '"probes": ' bake kept_parts.gltf --radius 1 --rays 6 --receivers extras:kind=floor --probes 0.5 --json -
+there b.glb b.gltf s.json
 fails 1 "--ignore: found 'a,,b', expected patterns of parts" bake kept_parts.gltf --radius 1 --ignore a,,b -o b.glb
 fails 1 "--occluders: found 'material:x', expected parts of" bake kept_parts.gltf --radius 1 --occluders material:x -o b.glb
 fails 1 "--receivers: found 'extras:kind=wall', expected parts of kept_parts.gltf: 'extras:kind=floor'" bake kept_parts.gltf --radius 1 --receivers extras:kind=wall -o b.glb

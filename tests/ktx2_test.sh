@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: ktx2_test.sh PROGRAM SOURCE FOLDER. KTX2 tiles read by an independent reader: every float equals the tile's JSON. The
+# Usage: ktx2_test.sh PROGRAM SOURCE FOLDER. KTX2 tiles and baked textures read by an independent reader: every float equals the tile's JSON. The
 # reader is downloaded from npm's registry once into FOLDER. Exit code 77: npm or the registry is not available.
 set -u
 nook=$1
@@ -42,6 +42,12 @@ reads ball_tile '9 x 4 x 1' 'RGBA = x,y,z,weight'
 reads even '4 x 4 x 1' 'texel = (x mod 4, y mod 4)'
 reads frames '4 x 3 x 3' '+ x mod 2, layer = frame mod 3, row = sample'
 reads moves '4 x 3 x 1' 'moves 0,0 1,0 0,1'
+
+# A texture in blocks, of a size that is no power of two.
+printf 'v 0 0 0\nv 1 0 0\nv 1 0 -1\nv 0 0 -1\nvt 0.1 0.1\nvt 0.9 0.1\nvt 0.9 0.9\nvt 0.1 0.9\nf 1/1 2/2 3/3 4/4\n' >floor.obj
+"$nook" bake floor.obj --radius 1 --rays 4 --texture 90 -o floor.ktx2 --json s.json || problem "floor"
+checks=$((checks + 1))
+(cd "$cache" && node blocks.js "$folder/floor.ktx2" 90) >log 2>&1 || problem "floor: $(cat log)"
 
 # Checks that the reader detects errors: another format, another weight.
 for offset in 12 $(($(wc -c <still.ktx2) - 2)); do # offsets of VkFormat and of the last weight

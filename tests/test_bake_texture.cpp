@@ -52,7 +52,13 @@ TEST_CASE("bake: a texture agrees with rays, and charts do not bleed", "[bake]")
 	const Level level = floorAndBoxWithCharts();
 	const Tracer tracer(level, {});
 	const BakeSettings settings = within(0.5);
-	const TextureBake bake = bakeTexture(tracer, level.uvs, 128, settings, {});
+	const auto bakeWith = [&](int threads)
+	{
+		std::vector<TextureBake> pages{bakeTexture(tracer, level.uvs, 128, settings, {threads, {}})};
+		finishTextures(level, level.uvs, {}, pages, threads);
+		return pages.front();
+	};
+	const TextureBake bake = bakeWith(1);
 	CHECK(bake.charts == 7);
 	CHECK(bake.missed == 0);
 	CHECK(bake.shared == 0);
@@ -62,10 +68,133 @@ TEST_CASE("bake: a texture agrees with rays, and charts do not bleed", "[bake]")
 	CAPTURE(check.rmse, check.bias);
 	CHECK(check.rmse < 0.04);
 	CHECK(std::fabs(check.bias) < 0.005);
-	CHECK(bakeTexture(tracer, level.uvs, 128, settings, {2, {}}).values == bake.values);
+	CHECK(bakeWith(2).values == bake.values);
 	// The floor's corner is open, and so are the texels just outside its chart.
 	CHECK(bake.values[0] > 230);
 	CHECK(bake.values[128 + 1] > 230);
+}
+
+TEST_CASE("bake: both sides of a smooth seam have the same values, and creases stay sharp", "[bake]")
+{
+	// A floor of two halves with charts of their own, one of them turned by 90 degrees and smaller, and a wall at the end of the
+	// other.
+	Level level = emptyLevel();
+	addQuad(level, {-1.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, -2.0});
+	addQuad(level, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, -2.0});
+	addQuad(level, {-1.0, 0.0, -1.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
+	const auto place = [&level](std::size_t quad, glm::vec2 corner, glm::vec2 u, glm::vec2 v)
+	{
+		for (std::size_t i = 4 * quad; i < 4 * quad + 4; ++i)
+		{
+			level.uvs[i] = corner + level.uvs[i].x * u + level.uvs[i].y * v;
+		}
+	};
+	place(0, {0.05F, 0.05F}, {0.24F, 0.0F}, {0.0F, 0.48F});
+	place(1, {0.9F, 0.05F}, {0.0F, 0.2F}, {-0.4F, 0.0F});
+	place(2, {0.05F, 0.6F}, {0.6F, 0.0F}, {0.0F, 0.3F});
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(0.5);
+	settings.rays = 16; // noise that differs on both sides
+	std::vector<TextureBake> joined{bakeTexture(tracer, level.uvs, 128, settings, {})};
+	TextureBake apart = joined.front();
+	fillEmpty(apart.texels, 128);
+	finishTextures(level, level.uvs, {}, joined, 1);
+	const auto valueAt = [](const TextureBake& bake, glm::vec2 uv)
+	{
+		const glm::vec2 at = 128.0F * uv - 0.5F;
+		const glm::vec2 low(std::floor(at.x), std::floor(at.y));
+		const auto texel = [&](int x, int y)
+		{
+			return bake.texels[static_cast<std::size_t>((static_cast<int>(low.y) + y) * 128 + static_cast<int>(low.x) + x)];
+		};
+		const glm::vec2 f = at - low;
+		return (texel(0, 0) * (1.0F - f.x) + texel(1, 0) * f.x) * (1.0F - f.y) +
+			   (texel(0, 1) * (1.0F - f.x) + texel(1, 1) * f.x) * f.y;
+	};
+	// The largest difference along the edge from one vertex to another of each side.
+	const auto differenceOf = [&](const TextureBake& bake, std::size_t a, std::size_t b, std::size_t c, std::size_t d)
+	{
+		float most = 0.0F;
+		for (int i = 0; i <= 1000; ++i)
+		{
+			const float share = static_cast<float>(i) / 1000.0F;
+			most = std::max(most, std::fabs(valueAt(bake, level.uvs[a] + share * (level.uvs[b] - level.uvs[a])) -
+											valueAt(bake, level.uvs[c] + share * (level.uvs[d] - level.uvs[c]))));
+		}
+		return most;
+	};
+	const auto vertexAt = [&](std::size_t quad, glm::dvec3 position)
+	{
+		std::size_t i = 4 * quad;
+		while (level.positions[i] != position)
+		{
+			++i;
+		}
+		return i;
+	};
+	const auto alongFloor = [&](const TextureBake& bake)
+	{
+		return differenceOf(bake, vertexAt(0, {0.0, 0.0, 1.0}), vertexAt(0, {0.0, 0.0, -1.0}), vertexAt(1, {0.0, 0.0, 1.0}),
+							vertexAt(1, {0.0, 0.0, -1.0}));
+	};
+	CHECK(alongFloor(apart) > 0.1F);
+	CHECK(alongFloor(joined.front()) < 0.02F);
+	for (std::size_t row = 78; row < 114; ++row) // inside the wall's chart
+	{
+		const auto first = static_cast<std::ptrdiff_t>(128 * row + 8);
+		CHECK(std::equal(apart.texels.begin() + first, apart.texels.begin() + first + 72, joined.front().texels.begin() + first));
+	}
+}
+
+TEST_CASE("bake: a texture in blocks has the values of the texture, and mipmaps their means", "[bake]")
+{
+	constexpr int kSize = 18; // no multiple of four
+	TextureBake bake;
+	bake.size_px = kSize;
+	for (int i = 0; i < kSize * kSize; ++i)
+	{
+		bake.texels.push_back(0.02F * static_cast<float>(i % kSize) + 0.03F * static_cast<float>(i / kSize)); // up to 0.85
+	}
+	const std::string file = textureFile(bake, ".ktx2", "nook test");
+	const auto numberAt = [&file](std::size_t at, std::size_t width)
+	{
+		uint64_t number = 0;
+		for (std::size_t i = width; i-- > 0;)
+		{
+			number = number << 8U | static_cast<uint8_t>(file.at(at + i));
+		}
+		return number;
+	};
+	REQUIRE(numberAt(40, 4) == 5); // levels: 18, 9, 4, 2, 1
+	std::size_t end = file.size();
+	for (std::size_t level = 0, size = kSize; level < 5; ++level, size /= 2)
+	{
+		const std::size_t begin = numberAt(80 + 24 * level, 8);
+		const std::size_t across = (size + 3) / 4;
+		REQUIRE(begin % 8 == 0);
+		REQUIRE(numberAt(88 + 24 * level, 8) == 8 * across * across);
+		CHECK(begin + 8 * across * across == end); // the largest comes last
+		end = begin;
+		double worst = 0.0;
+		double sum = 0.0;
+		for (std::size_t i = 0; i < size * size; ++i)
+		{
+			const std::size_t x = i % size;
+			const std::size_t y = i / size;
+			const uint64_t block = numberAt(begin + 8 * (y / 4 * across + x / 4), 8);
+			const double first = static_cast<double>(block & 255U);
+			const double last = static_cast<double>(block >> 8U & 255U);
+			const uint64_t index = block >> (16 + 3 * (y % 4 * 4 + x % 4)) & 7U;
+			const double share = index == 0 ? 0.0 : index == 1 ? 1.0 : static_cast<double>(index - 1) / 7.0;
+			const double value = (first + share * (last - first)) / 255.0;
+			sum += value / static_cast<double>(size * size);
+			worst = std::max(worst, level == 0 ? std::fabs(value - static_cast<double>(bake.texels[i])) : 0.0);
+		}
+		CHECK(worst < 0.5 * 0.15 / 7.0 + 0.003); // half a step of a block's range, and its ends in eight bits
+		CHECK(sum == Approx(0.425).margin(0.01));
+	}
+	CHECK(end > 200);
+	CHECK(textureFile(bake, ".exr", "nook test").size() > 4);
 }
 
 TEST_CASE("bake: coordinates that cannot carry a texture are refused", "[bake]")

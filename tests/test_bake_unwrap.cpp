@@ -268,6 +268,28 @@ TEST_CASE("unwrap: broken meshes get charts as well", "[bake]")
 					  Catch::Contains("no triangle with an area"));
 }
 
+TEST_CASE("unwrap: a mesh whose first place has no size gets charts at the others", "[bake]")
+{
+	Level level = sphere(8);
+	const std::size_t count = level.triangles.size();
+	const auto vertices = static_cast<uint32_t>(level.positions.size());
+	for (uint32_t v = 0; v < vertices; ++v)
+	{
+		addVertex(level, level.positions[v]);
+		level.positions[v] = glm::dvec3(0.0);
+	}
+	for (std::size_t t = 0; t < count; ++t)
+	{
+		const glm::uvec3 c = level.triangles[t];
+		addTriangle(level, c.x + vertices, c.y + vertices, c.z + vertices);
+	}
+	const std::vector<UnwrapPiece> pieces{pieceOf(0, count), pieceOf(count, count, 0)};
+	const Unwrapped made = unwrap(level, pieces, across(256), {});
+	checkCharts(level, made);
+	CHECK(std::count(made.page_of.begin(), made.page_of.end(), kNoPage) == static_cast<std::ptrdiff_t>(count));
+	CHECK(made.page_of.front() == kNoPage);
+}
+
 TEST_CASE("unwrap: places of one mesh get the same charts in their own sizes", "[bake]")
 {
 	Level level = sphere(8);

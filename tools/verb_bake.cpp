@@ -16,6 +16,7 @@
 #include "core/words.h"
 #include "core/work_units.h"
 #include "format/pattern_file.h"
+#include "scene/camera_choice.h"
 #include "scene/gltf_edit.h"
 #include "scene/level_glb.h"
 #include "scene/load_parts.h"
@@ -34,9 +35,10 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 7> kAllBakeFormats{".glb", ".gltf", ".csv", ".npy", ".json", ".ktx2", ".glsl"};
+constexpr std::array<std::string_view, 9> kAllBakeFormats{".glb", ".gltf", ".csv",  ".npy", ".json",
+														  ".png", ".exr",  ".ktx2", ".glsl"};
 constexpr std::array<std::string_view, 5> kBakeFormats{".glb", ".gltf", ".csv", ".npy", ".json"};
-constexpr std::array<std::string_view, 2> kTextureFormats{".glb", ".gltf"};
+constexpr std::array<std::string_view, 5> kTextureFormats{".glb", ".gltf", ".png", ".exr", ".ktx2"};
 constexpr std::array<std::string_view, 2> kProbeFormats{".ktx2", ".glsl"};
 constexpr std::array<std::string_view, 2> kBakeFits{"surface", "points"};                    // of BakeFit
 constexpr std::array<std::string_view, 2> kBakeSides{"separate", "mean"};                    // of BakeSides
@@ -168,8 +170,9 @@ void declare(CLI::App& app, BakeOptions& options)
 		 partsRow("--occluders", options.occluders,
 				  "The only parts of the level that rays meet, chosen as by --ignore (default: all)"),
 		 partsRow("--receivers", options.receivers,
-				  "The only parts that get values, chosen as by --ignore; the others stay as they are (default: all)",
-				  ofVertices({{"--max-error", "one of them, since the file of split triangles has all parts"}})),
+				  "The only parts that get values, chosen as by --ignore, or whose box has probes; the others stay as they are "
+				  "(default: all)",
+				  excludes("--max-error", "one of them, since the file of split triangles has all parts")),
 		 {"--from",
 		  takesText(options.from, "FILE"),
 		  "A detailed level that this one stands for: values are those of its surface, and rays meet it alone",
@@ -205,6 +208,13 @@ void declare(CLI::App& app, BakeOptions& options)
 	addRun(app, options.outputs, true);
 }
 
+// A texture alone.
+bool isTexture(const std::string& path)
+{
+	const std::string ending = endingOf(path);
+	return ending == ".png" || ending == ".exr" || ending == ".ktx2";
+}
+
 // Options whose values contradict each other; defaults that depend on others.
 void settle(BakeOptions& options)
 {
@@ -220,6 +230,11 @@ void settle(BakeOptions& options)
 	if (options.unwrap && options.target != BakeTarget::texture && isGiven(*options.app, "--to"))
 	{
 		refuse("--unwrap: found with --to " + options.to + ", expected --to texture");
+	}
+	const std::vector<std::string>& files = options.outputs.files;
+	if (options.unwrap && !files.empty() && std::all_of(files.begin(), files.end(), isTexture))
+	{
+		refuse("--unwrap: found only textures to write, expected a level as well, which has the coordinates");
 	}
 	options.charts.size_px = options.texture_px > 0 || options.charts.texel_m > 0.0 ? options.texture_px : kStandardTexture;
 	if ((options.target == BakeTarget::texture || options.unwrap) && options.texture_px == 0)
@@ -345,7 +360,8 @@ void addResult(Facts& facts, const BakeOptions& options, const VertexBake& bake)
 // The result of a run.
 struct Made
 {
-	std::vector<std::string> bytes; // a file each of the outputs, in their order
+	std::vector<std::string> bytes; // a file each of the outputs, in their order, or for textures each of their pages
+	std::size_t pages = 1;
 	std::vector<std::string> warnings;
 };
 
@@ -429,7 +445,9 @@ GltfFile fileOf(const BakeOptions& options, const BakeInput& input, const Level&
 		places = loadPlaces(options.level.level, options.level.load, input.level(), options.receivers, how, as_read);
 		return fileOf(options);
 	}
-	return openGlb(levelGlb(level, kProgram, places), level.name);
+	GltfFile file = openGlb(levelGlb(level, kProgram, places), level.name);
+	std::erase_if(places, [&input](const GltfPlace& place) { return input.part && input.receivers[place.triangle] == 0; });
+	return file;
 }
 
 // Adds values to the level's file, or to a file made of the level.
@@ -438,13 +456,9 @@ GltfBaked write(const BakeOptions& options, const BakeInput& input, const Level&
 {
 	std::vector<GltfPlace> places;
 	std::vector<std::string> outputs = options.outputs.files;
-	std::erase_if(outputs, isValues);
+	std::erase_if(outputs, [](const std::string& path) { return isValues(path) || isTexture(path); });
 	outputs.resize(std::max<std::size_t>(outputs.size(), 1), "-"); // its size is reported in any case
 	const GltfFile file = fileOf(options, input, input.part ? input.level() : level, places, nullptr, how);
-	if (!input.in_place)
-	{
-		std::erase_if(places, [&input](const GltfPlace& place) { return input.part && input.receivers[place.triangle] == 0; });
-	}
 	for (std::size_t i = 0; input.part && i < places.size(); ++i)
 	{
 		for (auto& [of_file, of_level] : places[i].vertices)
@@ -457,7 +471,11 @@ GltfBaked write(const BakeOptions& options, const BakeInput& input, const Level&
 	for (std::size_t i = 0, next = 0; i < options.outputs.files.size(); ++i)
 	{
 		const std::string& path = options.outputs.files[i];
-		made.bytes.push_back(isValues(path) ? placeValues(places, baked.front, baked.back, endingOf(path)) : baked.files[next++]);
+		if (!isTexture(path))
+		{
+			made.bytes.push_back(isValues(path) ? placeValues(places, baked.front, baked.back, endingOf(path))
+												: baked.files[next++]);
+		}
 	}
 	if (baked.kept_alpha > 0)
 	{
@@ -588,8 +606,28 @@ Made makeVertices(const BakeOptions& options, const BakeInput& input, Facts& fac
 
 std::string pngOf(const TextureBake& bake)
 {
-	const std::vector<uint8_t> rgb = listOf(3 * bake.values.size(), [&bake](std::size_t i) { return bake.values[i / 3]; });
-	return pngBytes(bake.size_px, bake.size_px, rgb, {});
+	return textureFile(bake, ".png", kProgram);
+}
+
+// Textures as files of their own take their places between the outputs, a file for each page.
+void addTextureFiles(const BakeOptions& options, const std::vector<TextureBake>& pages, Made& made)
+{
+	std::vector<std::string> levels = std::exchange(made.bytes, {});
+	made.pages = pages.size();
+	std::size_t next = 0;
+	for (const std::string& path : options.outputs.files)
+	{
+		const std::string ending = endingOf(path);
+		if (!isTexture(path))
+		{
+			made.bytes.push_back(std::move(levels[next++]));
+			continue;
+		}
+		for (const TextureBake& page : pages)
+		{
+			made.bytes.push_back(textureFile(page, ending, kProgram));
+		}
+	}
 }
 
 void addTexture(Facts& facts, const std::vector<TextureBake>& pages, std::size_t png_bytes)
@@ -643,6 +681,7 @@ Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& fa
 	std::vector<uint32_t> page_of = unwrapped.page_of;
 	std::erase(page_of, kNoPage);
 	settings.receivers = &solid.level;
+	finishTextures(solid.level, solid.level.uvs, page_of, pages, how.threads);
 	const BakeCheck check = checkTexture(input.tracer, solid.level.uvs, pages, page_of, settings, kCheckPoints, how);
 	if (isShare(how))
 	{
@@ -652,8 +691,10 @@ Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& fa
 	in.charts = chartsOf(places, unwrapped);
 	in.pages = mapped(pages, pngOf);
 	Made made;
-	GltfBaked baked =
-		bakeInto(file, places, in, options.outputs.files.empty() ? std::vector<std::string>{"-"} : options.outputs.files);
+	std::vector<std::string> outputs = options.outputs.files;
+	std::erase_if(outputs, isTexture);
+	outputs.resize(std::max<std::size_t>(outputs.size(), 1), "-");
+	GltfBaked baked = bakeInto(file, places, in, outputs);
 	facts.text("coordinates", "unwrapped");
 	facts.whole("pages", unwrapped.pages);
 	facts.number("texel_size_m", unwrapped.texel_m);
@@ -667,28 +708,38 @@ Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& fa
 							   [](std::size_t all, const std::string& png) { return all + png.size(); }));
 	addCheck(facts, options, check, "points of the surface");
 	addFile(facts, input, baked);
-	if (!options.outputs.files.empty())
-	{
-		made.bytes = std::move(baked.files);
-	}
+	made.bytes = std::move(baked.files);
+	addTextureFiles(options, pages, made);
 	return made;
 }
 
 Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& facts, const RunSettings& how)
 {
-	const Level& level = input.level();
+	const Level& level = input.part ? input.part->level : input.level();
 	BakeSettings settings = options.settings;
 	settings.receivers = &level;
 	uint32_t set = 1;
-	std::vector<glm::vec2> of_file = loadSecondUvs(options.level.level, options.level.load, level, how, set);
+	std::vector<glm::vec2> of_file = loadSecondUvs(options.level.level, options.level.load, input.level(), how, set);
 	const bool second = !of_file.empty();
 	if (!second && input.in_place)
 	{
 		set = 0;
-		of_file = loadSecondUvs(options.level.level, options.level.load, level, how, set);
+		of_file = loadSecondUvs(options.level.level, options.level.load, input.level(), how, set);
+	}
+	if (input.part && !of_file.empty())
+	{
+		const std::vector<glm::vec2> of_level = std::exchange(of_file, std::vector<glm::vec2>(level.positions.size()));
+		for (std::size_t v = 0; v < of_level.size(); ++v)
+		{
+			if (input.part->vertices[v] != UINT32_MAX)
+			{
+				of_file[input.part->vertices[v]] = of_level[v];
+			}
+		}
 	}
 	const std::vector<glm::vec2>& uvs = of_file.empty() ? level.uvs : of_file;
-	const std::vector<TextureBake> pages{bakeTexture(input.tracer, uvs, options.texture_px, settings, how)};
+	std::vector<TextureBake> pages{bakeTexture(input.tracer, uvs, options.texture_px, settings, how)};
+	finishTextures(level, uvs, {}, pages, how.threads);
 	const BakeCheck check = checkTexture(input.tracer, uvs, pages, {}, settings, kCheckPoints, how);
 	if (isShare(how))
 	{
@@ -706,6 +757,7 @@ Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& fact
 	}
 	Made made;
 	const GltfBaked baked = write(options, input, level, in, made, how);
+	addTextureFiles(options, pages, made);
 	facts.text("coordinates", second ? "second" : "first");
 	addTexture(facts, pages, png.size());
 	addCheck(facts, options, check, "points of the surface");
@@ -713,10 +765,12 @@ Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& fact
 	return made;
 }
 
-Made makeProbes(const BakeOptions& options, const Tracer& tracer, Facts& facts, const RunSettings& how)
+Made makeProbes(const BakeOptions& options, const BakeInput& input, Facts& facts, const RunSettings& how)
 {
-	const ProbeGrid grid = bakeProbes(tracer, options.probes_m, options.settings, how);
-	const BakeCheck check = checkProbes(tracer, grid, options.settings, kCheckPoints, how);
+	BakeSettings settings = options.settings;
+	settings.receivers = input.part ? &input.part->level : nullptr;
+	const ProbeGrid grid = bakeProbes(input.tracer, options.probes_m, settings, how);
+	const BakeCheck check = checkProbes(input.tracer, grid, settings, kCheckPoints, how);
 	if (isShare(how))
 	{
 		return {};
@@ -823,7 +877,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 	addLevelFacts(facts, loaded);
 	facts.whole("turned_triangles", turned);
 	addSettings(facts, options);
-	const Made made = probes                   ? makeProbes(options, input.tracer, facts, how)
+	const Made made = probes                   ? makeProbes(options, input, facts, how)
 					  : options.unwrap         ? makeUnwrapped(options, input, facts, how)
 					  : options.texture_px > 0 ? makeTexture(options, input, facts, how)
 											   : makeVertices(options, input, facts, how);
@@ -831,12 +885,16 @@ void run(BakeOptions& options, VerbProgress& progress)
 	{
 		return;
 	}
+	const Outputs outputs =
+		expanded(options.outputs, [&made](const std::string& path)
+				 { return isTexture(path) ? pictureFiles(path, static_cast<int>(made.pages)) : std::vector<std::string>{path}; });
+	checkRead(outputs, others(read));
 	OutputSet files;
 	for (std::size_t i = 0; i < made.bytes.size(); ++i)
 	{
-		files.add(options.outputs.files[i], made.bytes[i]);
+		files.add(outputs.files[i], made.bytes[i]);
 	}
-	addSide(files, options.outputs, facts.json(), read, options.outputs.json.empty() ? facts.lines() : "");
+	addSide(files, outputs, facts.json(), read, outputs.json.empty() ? facts.lines() : "");
 	files.commit();
 	for (const std::string& warning : made.warnings)
 	{

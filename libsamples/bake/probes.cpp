@@ -101,12 +101,18 @@ std::string vector(glm::dvec3 v)
 	return "vec3(" + real(v.x) + ", " + real(v.y) + ", " + real(v.z) + ")";
 }
 
+// Returns the box that the grid covers.
+Bounds boxOf(const Tracer& tracer, const BakeSettings& settings)
+{
+	return settings.receivers != nullptr ? boundsOf(*settings.receivers) : tracer.bounds();
+}
+
 } // namespace
 
 ProbeGrid bakeProbes(const Tracer& tracer, double spacing_m, const BakeSettings& settings, const RunSettings& run)
 {
 	assert(spacing_m > 0.0);
-	ProbeGrid grid = placeProbes(tracer.bounds(), spacing_m);
+	ProbeGrid grid = placeProbes(boxOf(tracer, settings), spacing_m);
 	const int rays = std::max(1, settings.rays / 6);
 	constexpr std::size_t kBlock = std::size_t{1} << 14U;
 	ProgressCounter progress(run.progress, "probes", grid.texels.size());
@@ -186,7 +192,7 @@ BakeCheck checkProbes(const Tracer& tracer, const ProbeGrid& grid, const BakeSet
 {
 	constexpr int kRays = 1024;
 	Random random(settings.seed, 0x5eed);
-	const Bounds& bounds = tracer.bounds();
+	const Bounds bounds = boxOf(tracer, settings);
 	BakeCheck check;
 	std::vector<ReferencePoint> open;
 	for (std::size_t i = 0; i < points; ++i)

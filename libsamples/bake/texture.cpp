@@ -356,7 +356,7 @@ RowSamples samplesOf(const Level& level, std::span<const glm::vec2> uvs, std::sp
 }
 
 // Averages each texel's samples except buried ones, and accumulates their squared standard errors.
-void addMeans(const RowSamples& all, std::vector<float>& values, TextureBake& bake, double& squares)
+void addMeans(const RowSamples& all, TextureBake& bake, double& squares)
 {
 	for (std::size_t begin = 0; begin < all.samples.size();)
 	{
@@ -374,7 +374,7 @@ void addMeans(const RowSamples& all, std::vector<float>& values, TextureBake& ba
 		bake.buried += count == 0.0 ? 1U : 0U;
 		if (count > 0.0)
 		{
-			values[all.texel_of[begin]] = static_cast<float>(sum / count);
+			bake.texels[all.texel_of[begin]] = static_cast<float>(sum / count);
 			squares += error / (count * count);
 		}
 		begin = end;
@@ -403,7 +403,7 @@ TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, in
 	const std::vector<uint32_t> charts = chartsOf(level, uvs, bake.charts);
 	const auto size = static_cast<std::size_t>(size_px);
 	const int rays = std::max(1, settings.rays / static_cast<int>(kRayedOfTexel));
-	std::vector<float> values(size * size, -1.0F);
+	bake.texels.assign(size * size, -1.0F);
 	std::vector<uint8_t> hit(level.triangles.size(), 0);
 	std::size_t overlaps = 0;
 	double squares = 0.0;
@@ -420,17 +420,11 @@ TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, in
 		const auto seed = settings.seed + static_cast<uint32_t>(first) * 0x9e3779b9U; // a different sequence per block of rows
 		traceSamples(tracer, level, all.samples, settings, rays, seed, withoutProgress(run), "rays");
 		bake.rays += all.samples.size() * static_cast<std::size_t>(rays);
-		addMeans(all, values, bake, squares);
+		addMeans(all, bake, squares);
 		progress.finish(static_cast<std::size_t>(rows));
 	}
 	bake.missed = static_cast<std::size_t>(std::count(hit.begin(), hit.end(), uint8_t{0}));
 	bake.standard_error = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(bake.covered - bake.buried, 1)));
-	fillEmpty(values, size_px);
-	bake.values.reserve(values.size());
-	for (const float value : values)
-	{
-		bake.values.push_back(static_cast<uint8_t>(std::clamp(value, 0.0F, 1.0F) * 255.0F + 0.5F));
-	}
 	return bake;
 }
 

@@ -8,6 +8,8 @@
 #include <glm/vec2.hpp>
 
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace nook
@@ -19,7 +21,8 @@ inline constexpr int kMostTexture_px = 8192;
 struct TextureBake
 {
 	int size_px = 0;
-	std::vector<uint8_t> values; // size × size, rows from the top; 255 is open
+	std::vector<float> texels;   // size × size, rows from the top: visibility; until finishTextures() below 0 without a chart
+	std::vector<uint8_t> values; // the same in 8 bits, by finishTextures()
 	std::size_t charts = 0;
 	std::size_t covered = 0; // texels covered by a chart, at least partly
 	std::size_t shared = 0;  // covered texels where two charts meet; the larger part counts
@@ -30,13 +33,21 @@ struct TextureBake
 };
 
 // `uvs`: one per vertex; v grows downward. Each texel is the mean over those of its 4 × 4 samples that lie in one chart, and `rays`
-// are distributed over them. Uncovered texels are filled from the nearest ones: ring by ring, then smoothly. Throws Error
-// (invalid_input) if there are no coordinates, some lie outside [0, 1], or charts overlap. Same bytes for any thread count.
-// Progress stage "texels".
+// are distributed over them. Throws Error (invalid_input) if there are no coordinates, some lie outside [0, 1], or charts overlap.
+// Same bytes for any thread count. Progress stage "texels".
 TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, int size_px, const BakeSettings& settings,
 						const RunSettings& run);
 
-// Like checkBake, for the texture sampled bilinearly as by a texture unit. `page_of`: the page of each triangle; empty: the first.
+// Makes bilinear values on both sides of each smooth seam agree, across pages as well, and then fills the texels without a chart
+// from the nearest ones: ring by ring, then smoothly. `page_of`: the page of each triangle; empty:
+// the first.
+void finishTextures(const Level& level, std::span<const glm::vec2> uvs, std::span<const uint32_t> page_of,
+					std::vector<TextureBake>& pages, int threads);
+
+// A finished texture as a file: ".png" in 8 bits, ".exr" in 32 bits, ".ktx2" in blocks (BC4) with all mipmaps. `writer`: of KTX2.
+std::string textureFile(const TextureBake& bake, std::string_view ending, std::string_view writer);
+
+// Like checkBake, for the texture sampled bilinearly as by a texture unit.
 BakeCheck checkTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, std::span<const TextureBake> pages,
 					   std::span<const uint32_t> page_of, const BakeSettings& settings, std::size_t points, const RunSettings& run);
 

@@ -8,6 +8,7 @@
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/words.h"
+#include "scene/ray_triangle.h"
 #include "scene/topology.h"
 
 #include <glm/common.hpp>
@@ -185,13 +186,14 @@ void settle(FlatChart& chart)
 class ChartMaker
 {
 public:
-	ChartMaker(const Level& level, std::span<const UnwrapPiece> pieces, int threads)
+	// `charted`: the piece that has each piece's charts.
+	ChartMaker(const Level& level, std::span<const UnwrapPiece> pieces, std::span<const std::size_t> charted, int threads)
 		: m_level(level), m_weld(weldPositions(level.positions, threads))
 	{
 		for (uint32_t p = 0; p < pieces.size(); ++p)
 		{
 			first_of.push_back(static_cast<uint32_t>(m_triangles.size()));
-			for (std::size_t i = 0; pieces[p].like == SIZE_MAX && i < pieces[p].triangles.size(); ++i)
+			for (std::size_t i = 0; charted[p] == p && i < pieces[p].triangles.size(); ++i)
 			{
 				add(level.triangles[pieces[p].triangles[i]], p);
 			}
@@ -655,6 +657,27 @@ std::vector<ChartPlace> place(std::span<const FlatChart> flat, std::span<const S
 	return take(std::move(best), fits);
 }
 
+// For each piece the first with the same triangles, or if that has no area, the first that has one.
+std::vector<std::size_t> chartedPieces(const Level& level, std::span<const UnwrapPiece> pieces)
+{
+	std::vector<std::size_t> charted(pieces.size());
+	std::vector<double> areas(pieces.size(), 0.0); // of the charted ones
+	for (std::size_t p = 0; p < pieces.size(); ++p)
+	{
+		const std::size_t first = std::min(pieces[p].like, p);
+		charted[first] = areas[first] > 0.0 ? charted[first] : p;
+		for (std::size_t i = 0; charted[first] == p && i < pieces[p].triangles.size(); ++i)
+		{
+			areas[first] += glm::length(twiceAreaOf(level, pieces[p].triangles[i]));
+		}
+	}
+	for (std::size_t p = pieces.size(); p-- > 0;)
+	{
+		charted[p] = charted[std::min(pieces[p].like, p)];
+	}
+	return charted;
+}
+
 } // namespace
 
 Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const UnwrapSettings& settings, const RunSettings& run)
@@ -662,7 +685,8 @@ Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const 
 	assert(settings.texel_m > 0.0 || settings.size_px > 0);
 	Unwrapped made;
 	std::optional<ProgressCounter> stage(std::in_place, run.progress, "charts");
-	ChartMaker maker(level, pieces, run.threads);
+	const std::vector<std::size_t> charted = chartedPieces(level, pieces);
+	ChartMaker maker(level, pieces, charted, run.threads);
 	const std::vector<Chart> charts = maker.charts(run.threads);
 	std::vector<std::pair<uint32_t, uint32_t>> chart_of(maker.triangleCount(), {kNoIndex, 0}); // and the number in it
 	std::vector<std::vector<uint32_t>> of_piece(pieces.size());
@@ -682,7 +706,7 @@ Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const 
 	double stretch = 0.0;
 	for (std::size_t p = 0; p < pieces.size(); ++p)
 	{
-		const std::size_t from = std::min(pieces[p].like, p);
+		const std::size_t from = charted[p];
 		for (const uint32_t c : of_piece[from])
 		{
 			double there = 0.0;
@@ -728,7 +752,7 @@ Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const 
 	for (std::size_t p = 0; p < pieces.size(); ++p)
 	{
 		known.clear();
-		const std::size_t from = std::min(pieces[p].like, p);
+		const std::size_t from = charted[p];
 		for (std::size_t i = 0; i < pieces[p].triangles.size(); ++i)
 		{
 			const auto [chart, number] = chart_of[maker.first_of[from] + i];

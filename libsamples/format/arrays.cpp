@@ -220,6 +220,7 @@ struct TexelFacts
 {
 	uint32_t format;    // VkFormat
 	uint32_t type_size; // bytes per value
+	uint32_t bytes;     // per texel or block
 	uint32_t flags;     // channel flags: signed and float, or none
 	uint32_t least;     // stored value of −1 or 0
 	uint32_t most;      // stored value of 1
@@ -227,22 +228,24 @@ struct TexelFacts
 
 TexelFacts factsOf(Ktx2Texel texel)
 {
-	return texel == Ktx2Texel::rgba32_float ? TexelFacts{109, 4, 0xC0U, bitsAs<uint32_t>(-1.0f), bitsAs<uint32_t>(1.0f)}
-											: TexelFacts{37, 1, 0U, 0U, 255U};
+	return texel == Ktx2Texel::rgba32_float  ? TexelFacts{109, 4, 16, 0xC0U, bitsAs<uint32_t>(-1.0f), bitsAs<uint32_t>(1.0f)}
+		   : texel == Ktx2Texel::rgba8_unorm ? TexelFacts{37, 1, 4, 0U, 0U, 255U}
+											 : TexelFacts{139, 1, 8, 0U, 0U, ~0U};
 }
 
-// Data format, section 5: four channels that are not colours.
-std::string descriptor(const TexelFacts& facts)
+// Data format, section 5: four channels that are not colours, or one of blocks.
+std::string descriptor(const TexelFacts& facts, bool is_block)
 {
-	const uint32_t bits = 8 * facts.type_size;
+	const uint32_t bits = is_block ? 64 : 8 * facts.type_size;
+	const std::vector<uint32_t> channels = is_block ? std::vector<uint32_t>{0U} : std::vector<uint32_t>{0U, 1U, 2U, 15U};
 	std::string block;
-	add32(block, 0);                                 // vendor Khronos, the basic descriptor
-	add(block, 2, 2);                                // version 1.3
-	add(block, 24 + 4 * 16, 2);                      // size of this block in bytes
-	add32(block, 0x00010001);                        // RGBSDA, no primaries, linear, straight alpha
-	add32(block, 0);                                 // blocks of one texel
-	add(block, 4 * facts.type_size, 8);              // first plane; the other seven are empty
-	for (const uint32_t channel : {0U, 1U, 2U, 15U}) // red, green, blue, alpha
+	add32(block, 0);                                  // vendor Khronos, the basic descriptor
+	add(block, 2, 2);                                 // version 1.3
+	add(block, 24 + channels.size() * 16, 2);         // size of this block in bytes
+	add32(block, is_block ? 0x00010083 : 0x00010001); // BC4 or RGBSDA, no primaries, linear, straight alpha
+	add32(block, is_block ? 0x0303 : 0);              // blocks of 4 x 4 texels or of one
+	add(block, facts.bytes, 8);                       // first plane; the other seven are empty
+	for (const uint32_t channel : channels)           // red, green, blue, alpha
 	{
 		const uint32_t bit = channel == 15U ? 3 * bits : bits * channel;
 		add32(block, bit | ((bits - 1) << 16U) | ((facts.flags | channel) << 24U));
@@ -373,27 +376,37 @@ std::string tileKtx2(const PatternTile& tile, const TileQuality& quality, const 
 std::string ktx2Bytes(const Ktx2Texture& texture)
 {
 	const TexelFacts facts = factsOf(texture.texel);
-	const uint64_t texel_bytes = 4 * uint64_t{facts.type_size};
-	const std::string format = descriptor(facts);
+	const std::string format = descriptor(facts, texture.texel == Ktx2Texel::bc4_unorm);
+	const uint64_t head_end = kIndexEnd + 24 * texture.mips.size();
 	const std::string words = keysAndValues(texture.notes);
 	std::string bytes(kIdentifier);
 	for (const uint64_t number :
 		 {uint64_t{facts.format}, uint64_t{facts.type_size}, uint64_t{texture.width}, uint64_t{texture.height},
-		  uint64_t{texture.depth}, uint64_t{texture.layers}, uint64_t{1}, uint64_t{1}, uint64_t{0}, kIndexEnd,
-		  uint64_t{format.size()}, kIndexEnd + format.size(), uint64_t{words.size()}})
+		  uint64_t{texture.depth}, uint64_t{texture.layers}, uint64_t{1}, uint64_t{1 + texture.mips.size()}, uint64_t{0}, head_end,
+		  uint64_t{format.size()}, head_end + format.size(), uint64_t{words.size()}})
 	{
-		add32(bytes, number); // one face, one level, no supercompression
+		add32(bytes, number); // one face, no supercompression
 	}
 	add(bytes, 0, 8); // no supercompression data
 	add(bytes, 0, 8);
-	const uint64_t texels = (kIndexEnd + format.size() + words.size() + texel_bytes - 1) / texel_bytes * texel_bytes;
-	for (const uint64_t number : {texels, uint64_t{texture.bytes.size()}, uint64_t{texture.bytes.size()}})
+	std::string levels(static_cast<std::size_t>(head_end) + format.size() + words.size(), '\0'); // the smallest comes first
+	std::vector<std::size_t> begins(1 + texture.mips.size());
+	for (std::size_t i = begins.size(); i-- > 0;)
 	{
-		add(bytes, number, 8);
+		pad(levels, facts.bytes);
+		begins[i] = levels.size();
+		levels += i == 0 ? texture.bytes : texture.mips[i - 1];
+	}
+	for (std::size_t i = 0; i < begins.size(); ++i)
+	{
+		const std::size_t size = i == 0 ? texture.bytes.size() : texture.mips[i - 1].size();
+		for (const std::size_t number : {begins[i], size, size})
+		{
+			add(bytes, number, 8);
+		}
 	}
 	bytes += format + words;
-	pad(bytes, static_cast<std::size_t>(texel_bytes));
-	return bytes + texture.bytes;
+	return bytes + levels.substr(bytes.size());
 }
 
 } // namespace nook

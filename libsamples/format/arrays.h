@@ -94,11 +94,12 @@ TileTexture textureOf(const PatternTile& tile, bool layered = false);
 std::string tileExr(const PatternTile& tile, const TileQuality& quality, const EmitContext& context);
 std::string tilePng(const PatternTile& tile, const TileQuality& quality, const EmitContext& context);
 
-// A KTX2 file with one uncompressed texture of one level.
+// A KTX2 file with one texture.
 enum class Ktx2Texel
 {
 	rgba32_float,
 	rgba8_unorm, // data, not colour
+	bc4_unorm,   // blocks of 4 x 4 texels with one channel, in eight bytes each
 };
 
 struct Ktx2Texture
@@ -106,10 +107,11 @@ struct Ktx2Texture
 	Ktx2Texel texel = Ktx2Texel::rgba32_float;
 	uint32_t width = 1;
 	uint32_t height = 1;
-	uint32_t depth = 0;  // 0: not a 3D texture
-	uint32_t layers = 0; // 0: not an array
-	Notes notes;         // key-value data, in any order
-	std::string bytes;   // texels: x fastest, then y, z and layers; little-endian
+	uint32_t depth = 0;              // 0: not a 3D texture
+	uint32_t layers = 0;             // 0: not an array
+	Notes notes;                     // key-value data, in any order
+	std::string bytes;               // texels: x fastest, then y, z and layers; little-endian
+	std::vector<std::string> mips{}; // smaller levels likewise, the largest first
 };
 
 std::string ktx2Bytes(const Ktx2Texture& texture);

@@ -153,6 +153,8 @@ public:
 		{
 			addValues(group);
 		}
+		const bool copies = m_bake.others_stay && !m_bake.png.empty();
+		const std::set<std::size_t> kept = copies ? materialsOfOthers(units, meshesOfOthers(units)) : std::set<std::size_t>();
 		m_bake.charts.empty() ? addMeshes(units, made) : addCharts(places, units, made);
 		if (!m_bake.visibility.empty())
 		{
@@ -164,7 +166,7 @@ public:
 		}
 		if (!m_bake.png.empty())
 		{
-			addTexture(units);
+			addTexture(units, kept);
 		}
 		made.bytes_added = m_editor.bytesAdded();
 		made.kept_alpha = m_kept_alpha.size();
@@ -398,7 +400,7 @@ private:
 			originals.try_emplace(unit.mesh, items("meshes")[unit.mesh]);
 		}
 		std::map<std::pair<std::size_t, std::map<std::size_t, std::size_t>>, std::size_t> known;
-		std::set<std::size_t> used = m_bake.others_stay && m_width > 0 ? meshesOfOthers(units) : std::set<std::size_t>();
+		std::set<std::size_t> used = m_bake.others_stay ? meshesOfOthers(units) : std::set<std::size_t>();
 		for (const MeshUnit& unit : units)
 		{
 			const auto [at, is_new] = known.try_emplace({unit.mesh, unit.groups}, unit.mesh);
@@ -573,30 +575,31 @@ private:
 		to = std::move(use);
 	}
 
-	void addTexture(const std::vector<MeshUnit>& units)
+	// `kept`: materials that others have as well, which get copies.
+	void addTexture(const std::vector<MeshUnit>& units, const std::set<std::size_t>& kept)
 	{
 		const std::size_t texture = textureOf(m_bake.png);
-		std::size_t made = kNoNumber; // for primitives without a material
-		std::set<std::size_t> done;
+		std::map<std::size_t, std::size_t> made; // by the material before
 		for (const MeshUnit& unit : units)
 		{
 			for (const auto& [number, places] : unit.primitives)
 			{
-				Document& primitive = primitiveOf(unit.mesh, number);
-				const std::size_t before = numberIn(primitive, "material");
-				if (before == kNoNumber && made == kNoNumber)
+				const std::size_t mesh = numberIn(items("nodes")[unit.nodes.front()], "mesh");
+				const std::size_t before = numberIn(primitiveOf(mesh, number), "material");
+				const auto [material, is_new] = made.try_emplace(before, before);
+				if (is_new)
 				{
-					made = items("materials").size();
-					items("materials").push_back(Document::object());
-				}
-				const std::size_t material = before == kNoNumber ? made : before;
-				primitive["material"] = material;
-				if (done.insert(material).second)
-				{
+					if (before == kNoNumber || kept.contains(before))
+					{
+						material->second = items("materials").size();
+						items("materials").push_back(before == kNoNumber ? Document::object() : items("materials")[before]);
+					}
 					const auto set = m_set_of_material.find(before);
-					setTexture(material, texture,
+					setTexture(material->second, texture,
 							   set != m_set_of_material.end() ? static_cast<uint32_t>(set->second) : m_bake.uv_set.value_or(0));
+					made.emplace(material->second, material->second);
 				}
+				primitiveOf(mesh, number)["material"] = made.at(before);
 			}
 		}
 	}

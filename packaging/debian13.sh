@@ -4,7 +4,7 @@
 # libraries; a clone of HEAD is built there, read by lintian and installed in an empty root: tests/debian_test.sh) and try/, where apt
 # installs the packages with only what they depend on. There the program and the Python package must write the bytes of NOOK, a
 # program of another system. Run it again at any time: base/ and build/ are kept.
-# usage: debian13.sh ROOT OUT NOOK      e.g. debian13.sh /var/tmp/debian13 packages build/release/tools/nook
+# usage: debian13.sh ROOT OUT NOOK      e.g. debian13.sh build/debian13 packages build/release/tools/nook
 set -eu
 
 refuse()

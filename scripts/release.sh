@@ -3,7 +3,7 @@
 # Builds every artefact of a release into a folder, with SHA256SUMS, TESTED (where each was tried by this script, or why not) and NOTES
 # (the first section of CHANGELOG.md). A preset whose compiler is missing is left out, with a line in TESTED. Exit code 4: a test
 # failed, or the library was not built.
-# usage: release.sh FOLDER    packages for Debian 13 are built in $NOOK_DEBIAN13, by default /var/tmp/nook_debian13 (packaging/debian13.sh)
+# usage: release.sh FOLDER    packages for Debian 13 are built in $NOOK_DEBIAN13, by default build/debian13 (packaging/debian13.sh)
 set -eu
 [ $# -eq 1 ] || { echo "release.sh: found '$*', expected FOLDER" >&2; exit 1; }
 mkdir -p "$1"
@@ -54,7 +54,7 @@ if built all library; then
 	rm -rf "$out/_CPack_Packages"
 	tested "*.deb" "lintian and an empty root on $system" sh tests/debian_test.sh "$release/tools/nook" . "$release"
 	mkdir "$out/debian13"
-	tested "debian13/*.deb" "lintian, an empty root and apt on Debian 13" packaging/debian13.sh "${NOOK_DEBIAN13:-/var/tmp/nook_debian13}" "$out/debian13" \
+	tested "debian13/*.deb" "lintian, an empty root and apt on Debian 13" packaging/debian13.sh "${NOOK_DEBIAN13:-build/debian13}" "$out/debian13" \
 		"$release/tools/nook"
 	rmdir "$out/debian13" 2>/dev/null || true # skipped
 	tested "libnook1_*.deb, libnook-dev_*.deb" "C, C++ and C# on $system" sh tests/library_test.sh "$release/tools/nook" . "$release"

@@ -69,7 +69,8 @@ std::string blockText(GlslTarget target)
 		   kBlockMembers + "} nook;\n";
 }
 
-// What stages read; their text has "NOOK_NEEDS nook_depths;". Numbers of textures match the modules of screen-space methods.
+// Resources of the stages, whose text asks for them with "NOOK_NEEDS nook_depths;". Numbers of textures match the modules of
+// screen-space methods.
 struct Resource
 {
 	const char* type; // in GLSL; uvec2, uvec4: elements of a storage buffer

@@ -25,8 +25,8 @@ enum class GlslTarget
 struct AovTextSettings
 {
 	GlslTarget target = GlslTarget::gl330;
-	int directions = 0;           // aov-mask: 32 to 256, a multiple of 32; 0: sums of occlusion
-	bool device_depth = false;    // depth as stored in a depth buffer; else along the view direction, metres
+	int directions = 0;        // aov-mask: 32 to 256, a multiple of 32; 0: sums of occlusion
+	bool device_depth = false; // depth as stored in a depth buffer; else along the view direction, metres
 };
 
 // One file for all stages, without #version: the including shader defines NOOK_VERTEX, NOOK_FRAGMENT or NOOK_RESOLVE first.

@@ -5,7 +5,7 @@ import { isReady } from './ao.js';
 import { glsl } from './nook_aov.js';
 import { readVolumes, VolumesGl } from './volumes_gl.js';
 
-// As NookAO has them.
+// Normals are encoded as those of NookAO.
 const normals = `uniform highp sampler2D nook_normals;
 #define NOOK_NORMAL(pixel) normalize(texelFetch(nook_normals, pixel, 0).xyz * 2.0 - 1.0)
 `;

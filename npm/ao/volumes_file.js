@@ -100,7 +100,7 @@ function checkVolumes({ clusters, polygons, corners, indices, vertices, hasPrism
 
 const isUsualW = (x, y, z, one) => x === 0 && y === 0 && ((Math.abs(Math.abs(z) - 1) <= 1e-5 && one === 0) || (z === 0 && one !== 0));
 
-// What is wrong with a projection, or nothing.
+// Returns the error in a projection, or nothing.
 function faultOf(p) {
 	if (!Array.prototype.every.call(p, Number.isFinite)) return 'infinity or NaN';
 	if (!isUsualW(p[3], p[7], p[11], p[15]) && isUsualW(p[12], p[13], p[14], p[15])) return 'looks row-major: transpose it';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the pages draw: a floor, a wall and things on it, below sky.
+// The scene of the pages: a floor, a wall and things on it, below sky.
 import * as THREE from 'three';
 
 export function sceneOf() {

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Time and memory of visibility at 100,000 points by the program, by Python and by C: python3 cost.py PROGRAM [POINTS]
+"""Time and memory of visibility at 100,000 points by the program, by Python and by C: python3 cost.py PROGRAM [POINTS [LEVEL]]
 
-POINTS is the program of examples/library/points.c. The last rows are what Python takes before nook is imported.
+POINTS is the program of examples/library/points.c; LEVEL is builtin:courtyard by default. The last rows are what Python takes before nook is imported.
 """
 
 import os
@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 
-LEVEL, COUNT, ROUNDS = "builtin:courtyard", 100_000, 5
+COUNT, ROUNDS = 100_000, 5
 CHILD = """
 import sys, numpy as np, nook
 rows = np.load(sys.argv[1])
@@ -37,7 +37,7 @@ def measured(command):
     return float(wall), float(processor), float(memory)
 
 
-def main(program, points=None):
+def main(program, points=None, level="builtin:courtyard"):
     import numpy as np
 
     rng = np.random.default_rng(1)
@@ -48,10 +48,10 @@ def main(program, points=None):
         rows.tofile(plain)
         with open(csv, "w") as file:
             file.writelines(",".join(repr(number) for number in row) + "\n" for row in rows.tolist())
-        commands = {"program": [program, "reference", LEVEL, "--points", csv, "--radius", "1", "--rays", "256", "-o", "program", "--json", os.devnull],
-                    "python": [sys.executable, "-c", CHILD, array, LEVEL, "python"]}
+        commands = {"program": [program, "reference", level, "--points", csv, "--radius", "1", "--rays", "256", "-o", "program", "--json", os.devnull],
+                    "python": [sys.executable, "-c", CHILD, array, level, "python"]}
         if points is not None:
-            commands["c"] = [points, LEVEL, plain, "c"]
+            commands["c"] = [points, level, plain, "c"]
         commands["python's import of numpy"] = [sys.executable, "-c", "import numpy"]
         commands["python's start"] = [sys.executable, "-c", ""]
         made = {name: os.path.join(folder, name + ".csv") for name in commands}
@@ -65,4 +65,4 @@ def main(program, points=None):
 
 
 if __name__ == "__main__":
-    main(*(os.path.abspath(path) for path in sys.argv[1:]))
+    main(*(name if name.startswith("builtin:") else os.path.abspath(name) for name in sys.argv[1:]))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: webgpu_test.sh PROGRAM SOURCE FOLDER. nook emit --wgsl: complete shaders of every method and volumes, drawn by Dawn, equal the
-# pictures of nook shade within 1/255; what is refused. WebGPU for Node.js is downloaded from npm's registry once into FOLDER. Exit code 77: no
-# npm, registry or Vulkan driver.
+# Usage: webgpu_test.sh PROGRAM SOURCE FOLDER. nook emit --wgsl: complete shaders of every method and volumes, drawn by Dawn and by
+# Firefox, equal the pictures of nook shade within 1/255; what is refused. WebGPU for Node.js is downloaded from npm's registry once
+# into FOLDER. Exit code 77: no npm, registry or Vulkan driver. Without Firefox, Dawn draws alone.
 set -u
 nook=$(realpath "$1")
 source=$(realpath "$2")
@@ -21,10 +21,32 @@ if ! [ -e "$cache/installed" ]; then
 		skip "npm could not install webgpu: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
 	touch "$cache/installed" # only once everything is installed
 fi
+firefox=$(command -v firefox-esr || command -v firefox) || echo "left out: found no Firefox, expected Debian's firefox-esr"
 # Chromium's driver on the CPU, because Dawn refuses Mesa's as incomplete.
-for driver in /usr/lib/chromium/vk_swiftshader_icd.json; do
-	[ -e "$driver" ] && export VK_ICD_FILENAMES="$driver"
-done
+dawn=
+[ -e /usr/lib/chromium/vk_swiftshader_icd.json ] && dawn="env VK_ICD_FILENAMES=/usr/lib/chromium/vk_swiftshader_icd.json"
+
+# agree SCRIPT NAME…: the pictures of draw.mjs or volumes.mjs by both engines.
+agree()
+{
+	script=$1
+	shift
+	for engine in Dawn ${firefox:+Firefox}; do
+		case $engine in
+		Dawn) $dawn node "$cache/$script" "$source" "$@" >said 2>log ;;
+		Firefox) node "$cache/firefox.mjs" "$firefox" "$cache/$script" "$source" "$@" >said 2>log ;;
+		esac
+		code=$?
+		[ $code = 77 ] && [ $engine = Dawn ] && skip "$(cat said)"
+		[ $code = 0 ] || problem "$engine: $script: exit code $code: $(tail -n 3 log said)"
+		for name in "$@"; do
+			checks=$((checks + 1))
+			result=$(sed -n "s/^$name //p" said)
+			[ -n "$result" ] && [ "${result##* }" = 0 ] || problem "$engine: $name: found '$result', expected no pixel beyond 1/255"
+		done
+		sed "s/^/$engine: /" said
+	done
+}
 
 cd "$folder" || exit 1
 for domain in disk ball hemisphere; do
@@ -69,16 +91,7 @@ cp lines.exr compute.exr
 cp lines.exr page.exr
 names="$names compute page"
 echo '{ "type": "module" }' >package.json # for nook_vo.js
-node "$cache/draw.mjs" "$source" $names >said 2>log
-code=$?
-[ $code = 77 ] && skip "$(cat said)"
-[ $code = 0 ] || problem "draw.mjs: exit code $code: $(tail -n 3 log)"
-for name in $names; do
-	checks=$((checks + 1))
-	result=$(sed -n "s/^$name //p" said)
-	[ -n "$result" ] && [ "${result##* }" = 0 ] || problem "$name: found '$result', expected no pixel beyond 1/255"
-done
-cat said
+agree draw.mjs $names
 
 # Volumes: with and without depth clamp, faces chosen one by one, prisms, an eye within volumes, a depth buffer.
 volumes=
@@ -98,15 +111,7 @@ scene volumes-faces "" --exact-bounds
 scene volumes-prisms "" "--layout prisms"
 scene volumes-within "" "" --eye 0.1,0.3,0.2 --target=-0.2,0.1,-0.4
 scene volumes-device-clip "--depth device" ""
-node "$cache/volumes.mjs" "$source" $volumes >said 2>log
-code=$?
-[ $code = 0 ] || problem "volumes.mjs: exit code $code: $(tail -n 3 log)"
-for name in $volumes; do
-	checks=$((checks + 1))
-	result=$(sed -n "s/^$name //p" said)
-	[ -n "$result" ] && [ "${result##* }" = 0 ] || problem "$name: found '$result', expected no pixel beyond 1/255"
-done
-cat said
+agree volumes.mjs $volumes
 
 # refuses PATTERN OPTIONS…
 refuses()

@@ -38,7 +38,7 @@ function normalsOf({ width, height, channels }) {
 		Float32Array.from({ length: 4 * width * height }, (_, i) => (i % 4 < 3 ? channels[`N.${'XYZ'[i % 4]}`][i >> 2] : 0)));
 }
 
-const bytesOf = text => Uint8Array.from(Buffer.from(text, 'base64'));
+const bytesOf = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
 
 // Its numbers are floats where the module's are.
 function blockOf(plan, wgsl) {

@@ -19,6 +19,7 @@ if (!adapter) {
 }
 const clips = adapter.features.has('depth-clip-control');
 const device = await adapter.requestDevice({ requiredFeatures: ['float32-blendable', ...(clips ? ['depth-clip-control'] : [])].filter(one => adapter.features.has(one)) });
+const sums_format = device.features.has('float32-blendable') ? 'r32float' : 'r16float';
 
 function bufferOf(values, usage) {
 	const buffer = device.createBuffer({ size: Math.ceil(values.byteLength / 4) * 4, usage: usage | GPUBufferUsage.COPY_DST, mappedAtCreation: true });
@@ -46,7 +47,7 @@ async function drawn(name, { width, height, channels, attributes }) {
 	frame.set({ cameraFromWorld: attributes.worldToCamera64, projection, width, height, firstRowNdcY: 1, zeroToOne: true, facesByRows: true });
 	const depths = textureOf('r32float', width, height, channels.Z.map(one => Math.min(one, 1e30)));
 	const normals = textureOf('rgba32float', width, height, Float32Array.from({ length: 4 * width * height }, (_, i) => (i % 4 < 3 ? channels[`N.${'XYZ'[i % 4]}`][i >> 2] : 0)));
-	const device_depths = textureOf('depth32float', width, height), sums = textureOf('r32float', width, height), visibility = textureOf('r32float', width, height);
+	const device_depths = textureOf('depth32float', width, height), sums = textureOf(sums_format, width, height), visibility = textureOf('r32float', width, height);
 	const { STORAGE, UNIFORM, VERTEX, INDEX } = GPUBufferUsage, uniform = bufferOf(frame.block, UNIFORM);
 	const resources = { nook: { buffer: uniform }, nook_depths: (name.includes('device') ? device_depths : depths).createView(), nook_normals: normals.createView(), nook_sums: sums.createView() };
 	for (const [variable, values] of [['nook_corners', volumes.corners], ['nook_polygons', volumes.polygons], ['nook_clusters', frame.seen]]) resources[variable] = { buffer: bufferOf(values, STORAGE) };
@@ -72,7 +73,7 @@ async function drawn(name, { width, height, channels, attributes }) {
 	const pipelineOf = back => device.createRenderPipelineAsync({ layout: 'auto',
 		vertex: { module, entryPoint: prisms ? 'nook_prism_vertex' : 'nook_vertex', constants: { nook_any_depth: tests ? 0 : 1 },
 			buffers: prisms ? [{ arrayStride: 8, attributes: [{ shaderLocation: 0, offset: 0, format: 'uint16x4' }] }] : [] },
-		fragment: { module, entryPoint: 'nook_fragment', targets: [{ format: 'r32float', blend: { color: add, alpha: add } }] },
+		fragment: { module, entryPoint: 'nook_fragment', targets: [{ format: sums_format, blend: { color: add, alpha: add } }] },
 		primitive: { cullMode: back ? 'front' : 'back', frontFace: frame.mirrored ? 'cw' : 'ccw', unclippedDepth: tests },
 		...(tests ? { depthStencil: { format: 'depth32float', depthWriteEnabled: false, depthCompare: back ? 'greater-equal' : 'less-equal' } } : {}) });
 	const used = ['nook', 'nook_depths', 'nook_normals', 'nook_corners', 'nook_polygons', 'nook_clusters', 'nook_faces'];

@@ -34,6 +34,8 @@ rowsOf()
 			kind = section == "Subcommands:" ? "verb" : section == "Positionals:" ? "positional" : "option"
 			line = substr($0, 3)
 			gap = match(line, /  +/)
+			# A value that fills the column, up to the 29th character, has one blank before the help.
+			if (!gap && substr(line, 28, 1) == " " && substr(line, 29) !~ /^[A-Z.:]+( |$)/) { gap = 28; RLENGTH = 1 }
 			left = gap ? substr(line, 1, gap - 1) : line
 			help = gap ? substr(line, gap + RLENGTH) : ""
 			blankAt = index(left, " ")

@@ -32,8 +32,10 @@ done | sort -u | while read -r name path; do
 		continue
 	fi
 	cp -L "$path" "$libs/$name"
-	debian=$(dpkg-query -S "$(readlink -f "$path")" 2>/dev/null | cut -d: -f1)
-	[ -z "$debian" ] || cp "/usr/share/doc/$debian/copyright" "$licences/$name.txt"
+	real=$(readlink -f "$path")
+	debian=$(dpkg-query -S "$real" 2>/dev/null || dpkg-query -S "${real#/usr}" 2>/dev/null) || # a package may name the file without /usr
+		{ echo "wheel.sh: $path: found no Debian package that it is from, expected one, for its licence" >&2; exit 4; }
+	cp "/usr/share/doc/${debian%%:*}/copyright" "$licences/$name.txt"
 done
 for file in "$libs"/*; do
 	strip --strip-unneeded "$file"

@@ -49,10 +49,10 @@ release=$PWD/build/library # the code of the preset release, without its tests
 if built all library; then
 	packaging/portable.sh build/library "$out"
 	atMost 25 "$out"/nook-*-linux-x86_64.tar.xz
-	tested "nook-*-linux-x86_64.tar.xz" "an empty root on $system" sh tests/portable_test.sh "$release/tools/nook" . build/library
+	tested "nook-*-linux-x86_64.tar.xz" "an empty root on $system" sh tests/portable_test.sh "$release/tools/nook" . "$out"/nook-*-linux-x86_64.tar.xz
 	(cd "$release" && cpack -G DEB -B "$out" >/dev/null)
 	rm -rf "$out/_CPack_Packages"
-	tested "*.deb" "lintian and an empty root on $system" sh tests/debian_test.sh "$release/tools/nook" . "$release"
+	tested "*.deb" "lintian and an empty root on $system" sh tests/debian_test.sh "$release/tools/nook" . "$release" "$out"
 	mkdir "$out/debian13"
 	tested "debian13/*.deb" "lintian, an empty root and apt on Debian 13" packaging/debian13.sh "${NOOK_DEBIAN13:-build/debian13}" "$out/debian13" \
 		"$release/tools/nook"
@@ -65,13 +65,13 @@ if built all library; then
 	chmod +x "$scratch"/wheel/python/nook/lib/nook_*_worker # as pip does
 	tested "nook-*.whl" "Python on $system" /usr/bin/python3 tests/python_test.py "$release/tools/nook" "$scratch/wheel" "$scratch/wheel/python/nook/lib/libnook.so.1"
 	sh npm/ao/pack.sh "$release/tools/nook" "$scratch/ao" && (cd "$scratch/ao" && npm pack --pack-destination "$out" >/dev/null 2>&1)
-	tested "nook-ao-*.tgz" "Chromium on $system" sh tests/npm_ao_test.sh "$release/tools/nook" . "$release/npm_bundlers"
+	tested "nook-ao-*.tgz" "packed again, Chromium on $system" sh tests/npm_ao_test.sh "$release/tools/nook" . "$release/npm_bundlers"
 	cp integrations/blender/nook_bake.py "$out"
 	tested "nook_bake.py" "Blender on $system" sh tests/blender_test.sh "$release/tools/nook" .
 fi
 if built all aarch64 -DCMAKE_EXE_LINKER_FLAGS=-static; then
 	packaging/portable.sh build/aarch64 "$out"
-	tested "nook-*-linux-aarch64.tar.xz" "QEMU on $system" sh tests/targets_test.sh "$release/tools/nook" "$PWD" "$PWD/build" aarch64
+	tested "nook-*-linux-aarch64.tar.xz" "its program by QEMU on $system" sh tests/targets_test.sh "$release/tools/nook" "$PWD" "$PWD/build" aarch64
 fi
 windows=windows
 test=targets_test.sh
@@ -87,7 +87,7 @@ if built all $windows; then
 fi
 if built all wasm; then
 	(cd build/wasm/npm && npm pack --pack-destination "$out" >/dev/null 2>&1)
-	tested "nook-patterns-*.tgz" "Node.js on $system" sh tests/targets_test.sh "$release/tools/nook" "$PWD" "$PWD/build" wasm
+	tested "nook-patterns-*.tgz" "its program by Node.js on $system" sh tests/targets_test.sh "$release/tools/nook" "$PWD" "$PWD/build" wasm
 fi
 awk '/^## / { if (found++) exit } found' CHANGELOG.md >"$out/NOTES"
 (cd "$out" && find . -type f ! -name TESTED ! -name NOTES -printf '%P\n' | sort | xargs -d '\n' sha256sum >"$scratch/sums" && mv "$scratch/sums" SHA256SUMS)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: portable_test.sh PROGRAM SOURCE BUILD. The portable bundle runs in a root that has nothing else, from a folder with blanks in
-# its name, and writes the program's bytes; a picture that needs OpenImageIO is refused there. Exit code 77: not root, or no static libc.
+# Usage: portable_test.sh PROGRAM SOURCE BUILD|BUNDLE.tar.xz. The portable bundle, of BUILD or unpacked, runs in a root that has nothing
+# else, from a folder with blanks in its name, and writes the program's bytes; a picture that needs OpenImageIO is refused there. Exit
+# code 77: not root, or no static libc.
 set -u
 nook=$1
 if [ "$(id -u)" -ne 0 ] || ! command -v chroot >/dev/null || [ ! -e "$(cc -print-file-name=libc.a)" ]; then
@@ -12,7 +13,10 @@ fi
 root="$folder/root"
 mkdir -p "$root/levels" "$root/dev" "$folder/here"
 cp -a /dev/null "$root/dev/"
-step "portable.sh" sh "$2/packaging/portable.sh" --folder "$3" "$root/a folder" || finish
+case $3 in
+*.tar.xz) mkdir "$root/a folder" && step "unpacked" tar xf "$3" -C "$root/a folder" --strip-components 1 || finish ;;
+*) step "portable.sh" sh "$2/packaging/portable.sh" --folder "$3" "$root/a folder" || finish ;;
+esac
 cp "$(dirname "$0")/../docs/pictures/views.png" "$folder/here/mask.png"
 printf 'GIF89a\1\0\1\0\0\0\0;' >"$folder/here/mask.gif"
 for mask in png gif; do

@@ -57,6 +57,21 @@ class Bytes(unittest.TestCase):
         tile = nook.tile(base, 2, starts=1)
         self.assertEqual(tile.file(".json"), self.program(".json", "tile", "--pattern", path, "--size", "2", "--starts", "1"))
         self.assertEqual(tile.points.shape, (4, 4, 3))
+        with self.assertRaises(nook.Error):
+            base.save(os.path.join(self.folder.name, "pattern.glb"))
+        self.assertFalse(os.path.exists(os.path.join(self.folder.name, "pattern.glb")))
+
+    def test_another_library(self):
+        source, library = os.path.join(self.folder.name, "other.c"), os.path.join(self.folder.name, "libnook.so.1")
+        with open(source, "w") as file:
+            file.write('int nook_require(unsigned abi) { return abi == 1 ? 9 : 0; }\nconst char *nook_version(void) { return "9"; }\n'
+                       'const char *nook_error(void) { return "another version"; }\n')
+        for flags, words in (([], "another version"), (["-Dnook_error=nook_other"], "found no function nook_error")):
+            subprocess.run(["cc", "-shared", "-fPIC", *flags, source, "-o", library], check=True)
+            done = subprocess.run([sys.executable, "-c", "import nook"], env=dict(os.environ, NOOK_LIBRARY=library), stderr=subprocess.PIPE,
+                                  text=True)
+            self.assertIn("ImportError", done.stderr)
+            self.assertIn(words, done.stderr)
 
     def test_visibility(self):
         V, F = cube()

@@ -261,6 +261,19 @@ TEST_CASE("capi: options are checked as on the command line", "[capi]")
 	CHECK(statusOf("o=x/y.json --count", "1") == NOOK_USAGE);
 	CHECK(nook_require(NOOK_ABI) == NOOK_OK);
 	CHECK(nook_require(NOOK_ABI + 1) == NOOK_WRONG_VERSION);
+	CHECK(std::string(nook_version()) == NOOK_VERSION);
+}
+
+TEST_CASE("capi: nook.hpp takes the numbers that arrays can hold", "[capi]")
+{
+	STATIC_REQUIRE(isArrayNumber<float> == true);
+	STATIC_REQUIRE(isArrayNumber<std::uint8_t> == true);
+	STATIC_REQUIRE(isArrayNumber<std::uint64_t> == true);
+	STATIC_REQUIRE(isArrayNumber<std::uint16_t> == false);
+	STATIC_REQUIRE(isArrayNumber<std::int8_t> == false);
+	STATIC_REQUIRE(isArrayNumber<bool> == false);
+	STATIC_REQUIRE(isArrayNumber<long double> == (sizeof(long double) == 8));
+	CHECK_THROWS_AS(Level::create(kFloorAndWall, std::vector<std::uint32_t>{0, 1, 2, 0}), Failure);
 }
 
 TEST_CASE("capi: progress cancels, also by throwing", "[capi]")

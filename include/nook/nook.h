@@ -26,6 +26,9 @@
 /* Grows when programs have to be compiled again; the library's file has the same number: libnook.so.1. */
 #define NOOK_ABI 1
 
+/* Version of this header; nook_version() is the library's. */
+#define NOOK_VERSION "0.1.0"
+
 #ifndef NOOK_API
 #if defined(__GNUC__) && !defined(_WIN32)
 #define NOOK_API __attribute__((visibility("default")))
@@ -145,7 +148,7 @@ NOOK_API nook_status nook_run_shade(const nook_array *depth, const nook_array *n
  * mae, mean_error, p95, max, ssim, flip, eq14. With "max-error" there is a result even with NOOK_DIFFERENCE. */
 NOOK_API nook_status nook_run_compare(const nook_array *test, const nook_array *reference, const nook_array *mask,
 								  const nook_options *options, nook_result **result);
-/* nook emit. Each "output" is a file of the result: .glsl, .h, .js. */
+/* nook emit. Each "output" is a file of the result: .glsl, .hlsl, .wgsl, .h, .js, .cs, .py, .json. */
 NOOK_API nook_status nook_run_emit(const nook_options *options, nook_result **result);
 
 /* ---- Results: pointers are valid until the result is destroyed ---- */

@@ -29,7 +29,7 @@ inline namespace api
 class Failure : public std::runtime_error
 {
 public:
-	Failure(nook_status status, const char* message) : std::runtime_error(message), m_status(status) {}
+	Failure(nook_status status, const std::string& message) : std::runtime_error(message), m_status(status) {}
 	nook_status status() const
 	{
 		return m_status;
@@ -47,9 +47,17 @@ inline void check(nook_status status)
 	}
 }
 
+// Numbers that a nook_array can hold.
+template <class Number>
+inline constexpr bool isArrayNumber = std::is_floating_point_v<Number> ? sizeof(Number) == 4 || sizeof(Number) == 8
+																	   : std::is_integral_v<Number> &&
+																			 !std::is_same_v<Number, bool> &&
+																			 (sizeof(Number) == 4 || sizeof(Number) == 8 ||
+																			  (sizeof(Number) == 1 && std::is_unsigned_v<Number>));
+
 template <class Number> constexpr nook_type arrayType()
 {
-	static_assert(std::is_arithmetic_v<Number>);
+	static_assert(isArrayNumber<Number>, "expected float, double, an unsigned byte, or a whole number of 32 or 64 bits");
 	if constexpr (std::is_floating_point_v<Number>)
 	{
 		return sizeof(Number) == 4 ? NOOK_FLOAT32 : NOOK_FLOAT64;
@@ -199,6 +207,11 @@ public:
 	template <class Number, class Index>
 	static Level create(const std::vector<Number>& positions, const std::vector<Index>& triangles, const Options& options = {})
 	{
+		if (positions.size() % 3 != 0 || triangles.size() % 3 != 0)
+		{
+			throw Failure(NOOK_USAGE, "Level::create: found " + std::to_string(positions.size()) + " coordinates and " +
+										  std::to_string(triangles.size()) + " indices, expected multiples of 3");
+		}
 		const nook_array vertices = array(positions.data(), {positions.size() / 3, 3});
 		const nook_array corners = array(triangles.data(), {triangles.size() / 3, 3});
 		nook_level* made = nullptr;

@@ -128,8 +128,10 @@ std::string beginOf(const std::string& path)
 	{
 		throw Error(ExitCode::invalid_input, name + ": found " + oneLine(defect) + ", expected an image that can be read");
 	}
-	throw Error(ExitCode::unsupported, name + ": found a picture that only OpenImageIO reads, which is not installed, expected " +
-										   "PNG, JPEG, TGA, BMP, EXR or uncompressed KTX2");
+	throw Error(ExitCode::unsupported,
+				name +
+					": found a picture that only OpenImageIO reads, and none of the version that nook was built with, expected " +
+					"PNG, JPEG, TGA, BMP, EXR or uncompressed KTX2");
 }
 
 // Decodes with a worker that does not need OpenImageIO; false if it declines the file, with the defect.

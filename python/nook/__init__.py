@@ -97,9 +97,9 @@ class Result:
 
     def save(self, path):
         """Writes a file, whose ending is one of the call's ``output``."""
-        ending = os.path.splitext(path)[1]
+        content = self.file(os.path.splitext(path)[1])
         with open(path, "wb") as file:
-            file.write(self.file(ending))
+            file.write(content)
 
 
 class _Options:
@@ -244,7 +244,11 @@ class Level:
         return cls(mesh.vertices, mesh.faces, **options)
 
     def describe(self):
-        """Arrays ``positions``, ``triangles``, ``normals``, ``uvs`` as they are used; ``facts["findings"]``."""
+        """The level as it is used.
+
+        Result: ``positions`` (n, 3), metres; ``triangles`` (m, 3), indices; ``normals`` (3 m, 3) and ``uvs`` (3 m, 2) per corner, where
+        the level has them; ``facts["findings"]``.
+        """
         made = ctypes.c_void_p()
         _library.check(_lib.nook_level_describe(self._handle.value, ctypes.byref(made)))
         return Result(made.value)
@@ -263,7 +267,8 @@ class Level:
         """Occlusion volumes.
 
         distance: how far a polygon darkens what lies before it, metres.
-        Result: ``corners`` (n, 3), and per polygon ``first_corner``, ``corner_count`` and ``alpha``.
+        Result: ``corners`` (n, 3), metres; per polygon (m,) ``first_corner`` and ``corner_count``, indices into them, and ``alpha``,
+        opacity from 0 to 1.
         output: .glb (default).
         """
         return _result(_lib.nook_run_volumes, dict({"output": ".glb"}, **options, distance=distance), self._handle.value)
@@ -344,7 +349,12 @@ def compare(test, reference, mask=None, **options):
 
 
 def emit(methods, patterns=(), **options):
-    """A shader module. methods: a list of names; patterns: Results of pattern() or tile(), or paths. output: .glsl (default), .h, .js."""
+    """A shader module.
+
+    methods: a list of names. patterns: Results of pattern() or tile(), or paths, one for each method that takes samples.
+    A language is required: ``glsl=330`` (430, "es300", "vulkan"), ``hlsl=60`` or ``wgsl=True``.
+    output: .glsl (default), .hlsl, .wgsl; .h, .js, .cs, .py, .json.
+    """
     if isinstance(methods, (list, tuple)):
         methods = ",".join(methods)
     patterns = patterns if isinstance(patterns, (list, tuple)) else [patterns]

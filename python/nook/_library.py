@@ -125,10 +125,12 @@ def load():
             ("result_file", ctypes.c_int32, [handle, text, out, ctypes.POINTER(ctypes.c_size_t)]),
             ("result_facts", ctypes.c_int32, [handle, ctypes.POINTER(text), ctypes.POINTER(text)]),
             ("result_destroy", None, [handle])):
-        function = getattr(library, "nook_" + name)
+        function = getattr(library, "nook_" + name, None)
+        if function is None:
+            raise ImportError(f"nook: {path}: found no function nook_{name}, expected a library with NOOK_ABI {ABI}")
         function.restype, function.argtypes = result, arguments
-    if library.nook_require(ABI) != 0:
-        raise ImportError(library.nook_error().decode())
+        if name == "error" and library.nook_require(ABI) != 0:
+            raise ImportError(library.nook_error().decode())
     _loaded = library
     return library
 

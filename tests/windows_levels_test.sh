@@ -106,6 +106,7 @@ checks=$((checks + 1))
 if [ -e "$source/../shared/scenes/sponza/sponza.glb.xz" ]; then
 	xz -dc "$source/../shared/scenes/sponza/sponza.glb.xz" >"$folder/here/sponza.glb"
 	cp "$folder/here/sponza.glb" "$folder/Ünï 文 1/"
+	both level.glb level sponza.glb
 	both view.exr gbuffer sponza.glb --size 48x27
 	both rays.exr reference sponza.glb --gbuffer view.exr --radius 1 --rays 4
 	both volumes.glb volumes sponza.glb --distance 0.3

@@ -276,6 +276,38 @@ TEST_CASE("capi: nook.hpp takes the numbers that arrays can hold", "[capi]")
 	CHECK_THROWS_AS(Level::create(kFloorAndWall, std::vector<std::uint32_t>{0, 1, 2, 0}), Failure);
 }
 
+TEST_CASE("capi: nook.hpp reaches every function", "[capi]")
+{
+	std::vector<double> normals(kFloorAndWall.size(), 0.0);
+	for (std::size_t i = 1; i < normals.size(); i += 3)
+	{
+		normals[i] = 1.0;
+	}
+	const Level level =
+		Level::create(kFloorAndWall, kFloorTriangles, normals, std::vector<double>(kFloorAndWall.size() / 3 * 2, 0.5));
+	const Result described = level.describe();
+	CHECK(described.names() == std::vector<std::string>{"positions", "triangles", "normals", "uvs"});
+	CHECK(described.array("triangles").shape[0] == 4);
+	CHECK(described.warnings().empty());
+	Options view;
+	view.set("eye", "0,1,-8").set("target", "0,0,-10").set("size", "8x6");
+	const Result pixels = gbuffer(level, view);
+	const nook_array depth = pixels.array("depth");
+	const nook_array projection = pixels.array("projection");
+	const nook_array camera = pixels.array("world_to_camera");
+	Options how;
+	how.set("method", "slices").set("radius", "2").set("normals", "from-depth");
+	const std::vector<float> seen = shade(depth, nullptr, &projection, &camera, how).values<float>("visibility");
+	CHECK(seen.size() == 48);
+	const std::vector<float> open(48, 1.0F);
+	const std::vector<float> none(48, 0.0F);
+	const nook_array test = array(seen.data(), {6, 8});
+	const nook_array reference = array(open.data(), {6, 8});
+	const nook_array mask = array(none.data(), {6, 8});
+	CHECK(compare(test, reference).values<double>("rmse").front() > 0.0);
+	CHECK_THROWS_AS(compare(test, reference, &mask), Failure); // nothing is left
+}
+
 TEST_CASE("capi: progress cancels, also by throwing", "[capi]")
 {
 	const Level level = Level::load("builtin:cornell");

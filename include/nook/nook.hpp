@@ -122,7 +122,7 @@ public:
 		check(nook_options_file(get(), name, file_name, bytes.data(), bytes.size()));
 		return *this;
 	}
-	// Returns true to go on. It is called from other threads, and must not throw.
+	// Returns true to go on; an exception ends the work, too. It is called from other threads.
 	Options& progress(std::function<bool(const char* stage, double share)> callback)
 	{
 		m_progress = std::make_shared<std::function<bool(const char*, double)>>(std::move(callback));
@@ -184,6 +184,23 @@ public:
 		check(nook_result_facts(get(), &json, nullptr));
 		return json;
 	}
+	// A line each, or empty.
+	std::string_view warnings() const
+	{
+		const char* lines = nullptr;
+		check(nook_result_facts(get(), nullptr, &lines));
+		return lines;
+	}
+	// Names of its arrays.
+	std::vector<std::string> names() const
+	{
+		std::vector<std::string> found;
+		while (const char* name = nook_result_name(get(), found.size()))
+		{
+			found.emplace_back(name);
+		}
+		return found;
+	}
 	nook_result* get() const
 	{
 		return m_handle.get();
@@ -192,6 +209,14 @@ public:
 private:
 	std::shared_ptr<nook_result> m_handle;
 };
+
+// Calls a function of nook.h whose last argument is the result.
+template <class Function, class... Arguments> Result call(Function function, Arguments... arguments)
+{
+	nook_result* made = nullptr;
+	check(function(arguments..., &made));
+	return Result(made);
+}
 
 class Level
 {
@@ -207,16 +232,23 @@ public:
 	template <class Number, class Index>
 	static Level create(const std::vector<Number>& positions, const std::vector<Index>& triangles, const Options& options = {})
 	{
-		if (positions.size() % 3 != 0 || triangles.size() % 3 != 0)
-		{
-			throw Failure(NOOK_USAGE, "Level::create: found " + std::to_string(positions.size()) + " coordinates and " +
-										  std::to_string(triangles.size()) + " indices, expected multiples of 3");
-		}
-		const nook_array vertices = array(positions.data(), {positions.size() / 3, 3});
-		const nook_array corners = array(triangles.data(), {triangles.size() / 3, 3});
+		return create(positions, triangles, std::vector<Number>(), std::vector<Number>(), options);
+	}
+	// Also three numbers of the normal and two texture coordinates per vertex; either may be empty.
+	template <class Number, class Index>
+	static Level create(const std::vector<Number>& positions, const std::vector<Index>& triangles,
+						const std::vector<Number>& normals, const std::vector<Number>& uvs, const Options& options = {})
+	{
+		const nook_array given[]{rows(positions, 3), rows(triangles, 3), rows(normals, 3), rows(uvs, 2)};
 		nook_level* made = nullptr;
-		check(nook_level_create(&vertices, &corners, nullptr, nullptr, options.get(), &made));
+		check(nook_level_create(&given[0], &given[1], normals.empty() ? nullptr : &given[2], uvs.empty() ? nullptr : &given[3],
+								options.get(), &made));
 		return Level(made);
+	}
+	// Arrays positions, triangles, normals, uvs; facts: what was found in the level.
+	Result describe() const
+	{
+		return call(nook_level_describe, get());
 	}
 	nook_level* get() const
 	{
@@ -224,16 +256,18 @@ public:
 	}
 
 private:
+	template <class Number> static nook_array rows(const std::vector<Number>& values, std::size_t columns)
+	{
+		if (values.size() % columns != 0)
+		{
+			throw Failure(NOOK_USAGE, "Level::create: found " + std::to_string(values.size()) +
+										  " numbers, expected a multiple of " + std::to_string(columns));
+		}
+		return array(values.data(), {values.size() / columns, columns});
+	}
+
 	std::shared_ptr<nook_level> m_handle;
 };
-
-// Calls a function of nook.h whose last argument is the result.
-template <class Function, class... Arguments> Result call(Function function, Arguments... arguments)
-{
-	nook_result* made = nullptr;
-	check(function(arguments..., &made));
-	return Result(made);
-}
 
 inline Result pattern(const Options& options)
 {
@@ -263,6 +297,12 @@ inline Result visibility(const Level& level, const nook_array& positions, const 
 {
 	return call(nook_run_visibility, level.get(), &positions, &normals, options.get());
 }
+// As nook_run_shade takes them.
+inline Result shade(const nook_array& depth, const nook_array* normals, const nook_array* projection,
+					const nook_array* world_to_camera, const Options& options)
+{
+	return call(nook_run_shade, &depth, normals, projection, world_to_camera, options.get());
+}
 // `gbuffer`: a result of gbuffer().
 inline Result shade(const Result& gbuffer, const Options& options)
 {
@@ -270,11 +310,16 @@ inline Result shade(const Result& gbuffer, const Options& options)
 	const nook_array normals = gbuffer.array("normals");
 	const nook_array projection = gbuffer.array("projection");
 	const nook_array camera = gbuffer.array("world_to_camera");
-	return call(nook_run_shade, &depth, &normals, &projection, &camera, options.get());
+	return shade(depth, &normals, &projection, &camera, options);
+}
+// mask: 0 where a pixel does not count.
+inline Result compare(const nook_array& test, const nook_array& reference, const nook_array* mask, const Options& options = {})
+{
+	return call(nook_run_compare, &test, &reference, mask, options.get());
 }
 inline Result compare(const nook_array& test, const nook_array& reference, const Options& options = {})
 {
-	return call(nook_run_compare, &test, &reference, static_cast<const nook_array*>(nullptr), options.get());
+	return compare(test, reference, nullptr, options);
 }
 
 } // namespace api

@@ -246,8 +246,8 @@ class Level:
     def describe(self):
         """The level as it is used.
 
-        Result: ``positions`` (n, 3), metres; ``triangles`` (m, 3), indices; ``normals`` (3 m, 3) and ``uvs`` (3 m, 2) per corner, where
-        the level has them; ``facts["findings"]``.
+        Result: ``positions`` (n, 3), metres; ``triangles`` (m, 3), indices; ``normals`` (n, 3) and ``uvs`` (n, 2), where the level has
+        them; ``facts["findings"]``.
         """
         made = ctypes.c_void_p()
         _library.check(_lib.nook_level_describe(self._handle.value, ctypes.byref(made)))

@@ -3,7 +3,8 @@
 # Builds every artefact of a release into a folder, with SHA256SUMS, TESTED (where each was tried by this script, or why not) and NOTES
 # (the first section of CHANGELOG.md). A preset whose compiler is missing is left out, with a line in TESTED. Exit code 4: a test
 # failed, or the library was not built.
-# usage: release.sh FOLDER    packages for Debian 13 are built in $NOOK_DEBIAN13, by default build/debian13 (packaging/debian13.sh)
+# usage: release.sh FOLDER    packages for Debian 13 are built in $NOOK_DEBIAN13, by default build/debian13 (packaging/debian13.sh); the
+# bundle is tried in systems in $NOOK_DISTRIBUTIONS, by default build/distributions (packaging/distributions.sh)
 set -eu
 [ $# -eq 1 ] || { echo "release.sh: found '$*', expected FOLDER" >&2; exit 1; }
 mkdir -p "$1"
@@ -50,6 +51,8 @@ if built all library; then
 	packaging/portable.sh build/library "$out"
 	atMost 25 "$out"/nook-*-linux-x86_64.tar.xz
 	tested "nook-*-linux-x86_64.tar.xz" "an empty root on $system" sh tests/portable_test.sh "$release/tools/nook" . "$out"/nook-*-linux-x86_64.tar.xz
+	tested "nook-*-linux-x86_64.tar.xz" "Debian 11 and 13, debootstrapped" packaging/distributions.sh "${NOOK_DISTRIBUTIONS:-build/distributions}" \
+		"$out"/nook-*-linux-x86_64.tar.xz "$release/tools/nook"
 	(cd "$release" && cpack -G DEB -B "$out" >/dev/null)
 	rm -rf "$out/_CPack_Packages"
 	tested "*.deb" "lintian and an empty root on $system" sh tests/debian_test.sh "$release/tools/nook" . "$release" "$out"

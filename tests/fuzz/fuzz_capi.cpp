@@ -6,6 +6,8 @@
 #include "nook/nook.h"
 
 #include <array>
+#include <limits>
+#include <thread>
 #include <vector>
 
 namespace
@@ -22,6 +24,9 @@ constexpr std::array kValues{"1",      "2",      "4",    "0.5",   "0",      "-1"
 							 "main",   "auto:1", "8x8",  "true",  "false",  "vo-line", "alchemy", "slices", "0,1,2",
 							 ".json",  ".csv",   ".glb", ".glsl", ".exr",   "330",     "*",       "arrays", "constant",
 							 "linear", "1e300",  "",     "even",  "statvo", "a,b",     "../.x",   "16"};
+
+constexpr std::array kLevels{"builtin:cornell", "builtin:heightfield:-1", "none.obj", "", ".", "builtin:"};
+constexpr std::array kNumbers{0.5, 2.0, -1.0, 0.0, 1e300, std::numeric_limits<double>::quiet_NaN()};
 
 // An array whose memory holds what its type and shape promise; where they promise too much there is none.
 class Array
@@ -122,7 +127,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 	for (int step = 0; step < 24; ++step)
 	{
 		nook_result* result = nullptr;
-		const auto choice = bytes.number<std::uint8_t>() % 20;
+		const auto choice = bytes.number<std::uint8_t>() % 25;
 		if (choice < 6)
 		{
 			nook_options* made = nullptr;
@@ -201,6 +206,59 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 			break;
 		}
 		case 18: check(nook_run_emit(one(options), &result)); break;
+		case 19:
+		{
+			nook_level* level = nullptr;
+			check(nook_level_load(kLevels[bytes.number<std::uint8_t>() % kLevels.size()], one(options), &level));
+			levels.push_back(level);
+			break;
+		}
+		case 20:
+		{
+			check(nook_options_number(one(options), kNames[bytes.number<std::uint8_t>() % kNames.size()],
+									  kNumbers[bytes.number<std::uint8_t>() % kNumbers.size()]));
+			check(nook_require(bytes.number<std::uint8_t>() % 3));
+			break;
+		}
+		case 21:
+		case 22:
+		{
+			// Few samples and starts, or an error; a pattern's file is that of the next tile.
+			nook_options* const made = one(options);
+			check(nook_options_set(made, "starts", "1"));
+			check(choice == 21 ? nook_run_pattern(made, &result) : nook_run_tile(made, &result));
+			const char* file = nullptr;
+			std::size_t length = 0;
+			if (check(nook_result_file(one(results), ".json", &file, &length)))
+			{
+				check(nook_options_file(one(options), "pattern", "pattern.json", file, length));
+			}
+			break;
+		}
+		case 23:
+		{
+			// Two threads on one handle, which one of them may destroy.
+			nook_level* const level = one(levels);
+			nook_result* const held = one(results);
+			const bool ends = bytes.number<std::uint8_t>() % 2 == 0;
+			std::thread other(
+				[&]
+				{
+					nook_result* described = nullptr;
+					check(nook_level_describe(level, &described));
+					nook_result_destroy(described);
+					if (ends)
+					{
+						nook_level_destroy(level);
+						nook_result_destroy(held);
+					}
+				});
+			check(nook_level_describe(level, &result));
+			const char* text = nullptr;
+			check(nook_result_facts(held, nullptr, &text));
+			other.join();
+			break;
+		}
 		default:
 			nook_options_destroy(one(options));
 			nook_level_destroy(one(levels));

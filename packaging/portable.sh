@@ -65,7 +65,7 @@ addLibraries()
 		nook $version for Linux on x86-64. bin/nook runs from any folder; nothing has to be installed.
 
 		bin/nook is a launcher, which starts libexec/nook with the libraries in lib/. lib/glibc/ is used where the system's glibc lacks
-		$glibc, lib/gcc/ where its libstdc++ lacks $glibcxx. The libraries are Debian's, without changes: libraries/versions names their
+		$glibc, lib/gcc/ where its libstdc++ lacks $glibcxx. The libraries are Debian's, without their symbols: libraries/versions names their
 		packages and sources (https://snapshot.debian.org), libraries/PACKAGE has the licence of each. A library may be replaced by
 		another build of the same version.
 
@@ -82,7 +82,8 @@ fill()
 	doc=$root/share/doc/nook
 	mkdir -p "$doc"
 	cp "$here/../LICENSE" "$here/../LICENSES/MIT.txt" "$doc/"
-	rm -rf "$root/share/doc/libnook-dev" "$root"/share/doc/nook/changelog* "$root/share/doc/nook/copyright"
+	rm -rf "$root"/share/doc/libnook* "$root/share/doc/python3-nook" "$root/share/lintian" "$root"/share/doc/nook/changelog* \
+		"$root/share/doc/nook/copyright"
 	if readelf -l "$root/bin/nook" | grep -q INTERP; then
 		readelf -h "$root/bin/nook" | grep -q X86-64 || refuse 5 "$build: found shared libraries, expected a static program except on x86-64"
 		mkdir "$root/libexec"

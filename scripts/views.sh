@@ -4,7 +4,8 @@
 # selection. Needs OpenImageIO's oiiotool.
 # usage: views.sh PROGRAM SHEET.png LEVEL,REACH...
 # The sheet in docs/reference/gbuffer.md:
-#   scripts/views.sh build/release/tools/nook docs/pictures/views.png sponza.glb,1.5 delft.obj,8 bathroom.glb,1 dragon.ply,0.02 shuttle.glb,0.05
+#   scripts/views.sh build/release/tools/nook docs/pictures/views.png sponza.glb,1.5 delft.obj,8 bathroom.glb,1 dragon.ply,0.02 shuttle.glb,0.05 \
+#     pine.glb,4 temple.gltf,1 garden.glb,1
 set -euo pipefail
 nook=$1
 sheet=$2

@@ -108,12 +108,11 @@ void withDecoder(std::string_view bytes, const std::string& name, const std::fun
 	refuse(name, "an unknown format");
 }
 
-void decode(ValueReader& request, ValueWriter& answer)
+Decoded<Image> decodedImage(const std::string& bytes, const std::string& name)
 {
-	const std::string name = request.text();
-	std::string bytes;
-	request.values(bytes, kMaxFileBytes);
-	withDecoder(bytes, name, [&](OIIO::ImageInput& input) { send(taken(input, name), answer); });
+	Decoded<Image> answer;
+	withDecoder(bytes, name, [&](OIIO::ImageInput& input) { answer.image = taken(input, name); });
+	return answer;
 }
 
 std::optional<AlphaImage> alphaOf(OIIO::ImageInput& input, const EncodedAlpha& picture, std::size_t max_texels)
@@ -153,6 +152,7 @@ Decoded<AlphaImage> decodedAlpha(std::string_view bytes, const EncodedAlpha& pic
 int main(int argc, char** argv)
 {
 	using namespace nook;
-	constexpr std::array<WorkerFunction, 2> kFunctions{{{kDecode, decode}, {kDecodeAlphas, answerAlphas<decodedAlpha>}}};
+	constexpr std::array<WorkerFunction, 2> kFunctions{
+		{{kDecode, answerImage<decodedImage>}, {kDecodeAlphas, answerAlphas<decodedAlpha>}}};
 	return serveRequests(argc, argv, kFunctions, keepToOneThread);
 }

@@ -9,7 +9,7 @@
 #include "core/lists.h"
 #include "core/system.h"
 #include "core/text.h"
-#include "farm/scripts.h"
+#include "farm/assets.h"
 
 #include <nlohmann/json.hpp>
 

@@ -7,8 +7,8 @@
 #include "core/lists.h"
 #include "methods/method_table.h"
 #include "scene/gltf_edit.h"
+#include "volume/assets.h"
 #include "volume/build.h"
-#include "volume/runtime_assets.h"
 #include "volume/volume_glb.h"
 #include "volume/volumes.h"
 

@@ -120,8 +120,7 @@ bool isBefore(const std::string& a, const std::string& b)
 	return place(a) < place(b);
 }
 
-// The names of the channels in that order; none if one of them is not of floats, or has other samples than one per pixel, or if the
-// picture is deep.
+// The channels' names in that order; none if one is not of floats or not sampled once per pixel, or the picture is deep.
 std::vector<std::string> channelNames(const Imf::Header& header)
 {
 	std::vector<std::string> names;

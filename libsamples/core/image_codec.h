@@ -192,8 +192,7 @@ template <DecodeImage decode> void answerImage(ValueReader& from, ValueWriter& a
 	send(decode(bytes, name), answer);
 }
 
-// The number of texels. Throws Error (invalid_input) if there are none, more than `most`, or too many values; `option` changes the
-// limit.
+// The number of texels. Throws Error (invalid_input) if it is 0, above `most` (set by `option`), or there are too many values.
 std::size_t checkedTexels(int width_px, int height_px, int channels, std::size_t most, const std::string& name,
 						  const char* option = " (max-texels)");
 

@@ -69,8 +69,7 @@ std::string constantsText(const Source& source)
 	return text;
 }
 
-// Language syntax: each array is its comment, `open`, the rows wrapped in `before` and `after` and separated by commas, then
-// `close`.
+// Syntax of a language: how it begins and ends a row, a number's suffix, and how it ends an array.
 struct Shape
 {
 	std::string before;

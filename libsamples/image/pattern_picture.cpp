@@ -378,8 +378,7 @@ constexpr int kGreatestFactor = 32;
 constexpr int kLegendHeight = 48;
 constexpr Colour kNotCounted = colourOf(0x9a9a9a);
 
-// `share` is −1 to 1. The blue and red are distinguishable for the colour-blind, and both darken evenly from white, so that size
-// reads before sign.
+// `share`: −1 to 1. The colour-blind can tell this blue and red, and both darken evenly from white.
 Colour differenceColour(double share)
 {
 	constexpr std::array kDarker{colourOf(0xffffff), colourOf(0x8cbfe6), colourOf(0x2a6fbb), colourOf(0x08306b)};

@@ -256,8 +256,7 @@ namespace
 
 using namespace energy;
 
-// Number of rotations that approximate all of them: the mean over the angle is smooth, and the trapezoid rule's error at 48 is
-// below 1e-6 of plane².
+// Rotations that approximate all: the mean over the angle is smooth, and the trapezoid rule's error is below 1e-6 of plane².
 constexpr int kBiasRotations = 48;
 
 // All rows of the whole part at once; each pair is computed once for both of its samples.

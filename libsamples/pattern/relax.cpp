@@ -72,8 +72,7 @@ public:
 		m_error = relativeSpread(m_cells.integrals);
 	}
 
-	// One force step: shortened until the error falls, else rejected; lengthened for the next time if accepted. False if no step
-	// helps.
+	// One force step, shortened until the error falls and longer the next time if accepted. False if no step helps.
 	bool repel(double& step)
 	{
 		const Points force = repulsion(m_recipe.domain, m_points);

@@ -338,8 +338,7 @@ PatternTile repeated(const PatternTile& small, int size)
 	return tile;
 }
 
-// The squared error that the tile is optimised for, without the single variants' part: exact when it is reported, approximate
-// otherwise.
+// The squared error to be minimised, without the single variants' part: exact when it is reported, else approximate.
 double seenError(const PatternTile& tile, const TileShares& seen, int threads)
 {
 	Points points;

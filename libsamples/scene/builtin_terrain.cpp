@@ -61,8 +61,7 @@ double noiseAt(glm::dvec2 p, uint32_t seed)
 // Metres. Leaves out ridges too narrow for a grid of that step.
 double heightAt(glm::dvec2 p, double step)
 {
-	// Broad hills and valleys, then ridges: 1 − |noise| is sharp where the noise changes sign; each octave is weighted by the
-	// previous one.
+	// Broad hills and valleys, then ridges, sharp where the noise changes sign; each octave is weighted by the previous one.
 	const double hills = 26.0 * noiseAt(p * (1.0 / 210.0), 1) + 9.0 * noiseAt(p * (1.0 / 90.0), 2);
 	double ridges = 0.0;
 	double weight = 1.0;

@@ -52,8 +52,7 @@ std::optional<std::array<double, 6>> parseRow(std::string_view row)
 	return numbers;
 }
 
-// Possible error of a written coordinate. Points often come from 32-bit numbers, except map coordinates, where these are a
-// millimetre or more apart.
+// Possible error of a coordinate: usually of a 32-bit number, but map coordinates would be millimetres apart.
 double roundingOf(double size_m)
 {
 	return size_m * (size_m < kLarge_m ? 0x1p-24 : 0x1p-53);

@@ -217,8 +217,7 @@ public:
 	// Binds the uniform block and this picture's textures.
 	void bind() const;
 
-	// Draws the depth buffer from the bound linear depths (aovDepthProgram); leaves the depth test enabled and depth writes
-	// disabled.
+	// Draws the depth buffer from the bound linear depths; leaves the depth test enabled and depth writes disabled.
 	void drawDepth(const GlProgram& program) const;
 
 	// Call before drawing volumes: clears the sums or bits and draws into them.

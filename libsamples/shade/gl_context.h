@@ -123,8 +123,7 @@ public:
 	// Sets a uniform ivec4; ignored if the program has no such uniform.
 	void setIntegers(const char* name, const glm::ivec4& values);
 
-	// From now on, records the pixels that it discards, or fills only those. `left` has the target's size and must outlive the
-	// pass.
+	// Records the pixels that it discards, or fills only those. `left` has the target's size and must outlive the pass.
 	void leave(const GlLeft& left);
 	void fill(const GlLeft& left);
 

@@ -305,8 +305,7 @@ bool usesCompute(const GlContext& context, const ShadeSettings& settings)
 	return builder == TableBuilder::compute || (builder == TableBuilder::automatic && automatic);
 }
 
-// A G-buffer and its samples on the GPU. Row 0 of a texture is the top row; gl_FragCoord counts the same way, since nothing is
-// displayed.
+// A G-buffer and its samples on the GPU. Row 0 is the top row, also in gl_FragCoord, since nothing is displayed.
 struct Inputs
 {
 	GlTexture depths;

@@ -227,9 +227,9 @@ GlTexture::GlTexture(int width, int height, int channels, const float* values)
 }
 
 GlTexture::GlTexture(const PictureShape& shape)
-	: m_shape(shape), m_target(shape.format == PictureFormat::counts ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D)
+	: m_shape(shape), m_target(shape.format == PictureFormat::counts ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D),
+	  m_name(glGenTextures, glDeleteTextures)
 {
-	glGenTextures(1, &m_name);
 	glBindTexture(m_target, m_name);
 	glTexParameteri(m_target, GL_TEXTURE_MIN_FILTER, shape.levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST);
 	glTexParameteri(m_target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
@@ -251,51 +251,31 @@ GlTexture::GlTexture(const PictureShape& shape)
 	checkGlErrors();
 }
 
-GlTexture::~GlTexture()
+GlLeft::GlLeft(int width, int height) : m_name(glGenRenderbuffers, glDeleteRenderbuffers)
 {
-	glDeleteTextures(1, &m_name);
-}
-
-GlLeft::GlLeft(int width, int height)
-{
-	glGenRenderbuffers(1, &m_name);
 	glBindRenderbuffer(GL_RENDERBUFFER, m_name);
 	glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT16, width, height);
 	checkGlErrors();
 }
 
-GlLeft::~GlLeft()
-{
-	glDeleteRenderbuffers(1, &m_name);
-}
-
-unsigned fragmentProgram(const std::string& fragment_source)
+GlName fragmentProgram(const std::string& fragment_source)
 {
 	const std::string version = epoxy_is_desktop_gl() ? "#version 330 core\n" : "#version 300 es\n";
 	return linkedProgram(
 		{compiledShader(GL_VERTEX_SHADER, version + kVertexSource), compiledShader(GL_FRAGMENT_SHADER, fragment_source)});
 }
 
-GlPass::GlPass(const std::string& fragment_source) : GlPass(fragmentProgram(fragment_source))
+GlPass::GlPass(const std::string& fragment_source) : GlPass(0U)
 {
-	m_owns = true;
-}
-
-GlPass::GlPass(unsigned program) : m_program(program)
-{
-	glGenVertexArrays(1, &m_vertices);
-	glGenBuffers(1, &m_block);
+	m_own = fragmentProgram(fragment_source);
+	m_program = m_own;
 	glUseProgram(m_program);
 }
 
-GlPass::~GlPass()
+GlPass::GlPass(unsigned program)
+	: m_program(program), m_vertices(glGenVertexArrays, glDeleteVertexArrays), m_block(glGenBuffers, glDeleteBuffers)
 {
-	glDeleteBuffers(1, &m_block);
-	glDeleteVertexArrays(1, &m_vertices);
-	if (m_owns)
-	{
-		glDeleteProgram(m_program);
-	}
+	glUseProgram(m_program);
 }
 
 void GlPass::bind(const char* sampler, const GlTexture& texture)
@@ -333,8 +313,7 @@ void GlPass::fill(const GlLeft& left)
 
 double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 {
-	unsigned frame = 0;
-	glGenFramebuffers(1, &frame);
+	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
 	glBindFramebuffer(GL_FRAMEBUFFER, frame);
 	if (target.target() == GL_TEXTURE_2D)
 	{
@@ -379,7 +358,6 @@ double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 	};
 	const double seconds = secondsOf(commands, timer);
 	glDisable(GL_DEPTH_TEST);
-	glDeleteFramebuffers(1, &frame);
 	return seconds;
 }
 
@@ -390,13 +368,11 @@ std::vector<float> readFloats(const GlTexture& texture, unsigned format, std::si
 {
 	const PictureShape& shape = texture.shape();
 	std::vector<float> values(channels * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
-	unsigned frame = 0;
-	glGenFramebuffers(1, &frame);
+	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
 	glBindFramebuffer(GL_FRAMEBUFFER, frame);
 	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
 	glPixelStorei(GL_PACK_ALIGNMENT, 4);
 	glReadPixels(0, 0, shape.width, shape.height, format, GL_FLOAT, values.data());
-	glDeleteFramebuffers(1, &frame);
 	checkGlErrors();
 	return values;
 }
@@ -417,13 +393,11 @@ std::vector<std::uint32_t> readCounts(const GlTexture& texture, int layer)
 {
 	const PictureShape& shape = texture.shape();
 	std::vector<std::uint32_t> values(4 * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
-	unsigned frame = 0;
-	glGenFramebuffers(1, &frame);
+	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
 	glBindFramebuffer(GL_FRAMEBUFFER, frame);
 	glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture.name(), 0, layer);
 	glPixelStorei(GL_PACK_ALIGNMENT, 4);
 	glReadPixels(0, 0, shape.width, shape.height, GL_RGBA_INTEGER, GL_UNSIGNED_INT, values.data());
-	glDeleteFramebuffers(1, &frame);
 	checkGlErrors();
 	return values;
 }
@@ -449,9 +423,9 @@ unsigned compiledShader(unsigned kind, const std::string& source)
 	return shader;
 }
 
-unsigned linkedProgram(const std::vector<unsigned>& shaders)
+GlName linkedProgram(const std::vector<unsigned>& shaders)
 {
-	const unsigned program = glCreateProgram();
+	GlName program(glCreateProgram(), [](int, const unsigned* name) { glDeleteProgram(*name); });
 	for (const unsigned shader : shaders)
 	{
 		glAttachShader(program, shader);
@@ -465,7 +439,6 @@ unsigned linkedProgram(const std::vector<unsigned>& shaders)
 	glGetProgramiv(program, GL_LINK_STATUS, &good);
 	if (good == 0)
 	{
-		glDeleteProgram(program);
 		throw Error(ExitCode::runtime, "OpenGL: found a program that does not link, expected one that links");
 	}
 	return program;
@@ -482,11 +455,7 @@ void checkGlErrors()
 
 double secondsOf(const std::function<void()>& commands, bool timer)
 {
-	unsigned query = 0;
-	if (timer)
-	{
-		glGenQueries(1, &query);
-	}
+	const GlName query = timer ? GlName(glGenQueries, glDeleteQueries) : GlName();
 	glFinish();
 	const auto start = std::chrono::steady_clock::now();
 	if (timer)
@@ -505,7 +474,6 @@ double secondsOf(const std::function<void()>& commands, bool timer)
 		std::uint64_t nanoseconds = 0;
 		glGetQueryObjectui64v(query, GL_QUERY_RESULT, &nanoseconds);
 		seconds = 1e-9 * static_cast<double>(nanoseconds);
-		glDeleteQueries(1, &query);
 	}
 	checkGlErrors();
 	return seconds;
@@ -576,11 +544,6 @@ GlScan::GlScan(int axis)
 {
 }
 
-GlScan::~GlScan()
-{
-	glDeleteProgram(m_program);
-}
-
 double GlScan::run(const GlTexture& source, const GlTexture& target, int layer, bool timer)
 {
 	glUseProgram(m_program);
@@ -605,10 +568,7 @@ GlSession::GlSession(std::optional<int> device) : m_context(GlApi::core, device)
 GlSession::~GlSession()
 {
 	m_context.use();
-	for (const auto& [source, program] : m_programs)
-	{
-		glDeleteProgram(program);
-	}
+	m_programs.clear();
 }
 
 const GlContext& GlSession::use() const

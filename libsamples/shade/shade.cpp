@@ -196,13 +196,6 @@ void runPass(const ShadePass& pass, const shade_kernels::Kernels& inputs, std::v
 	}
 }
 
-namespace
-{
-
-constexpr std::size_t kBand = 64; // columns summed at a time per thread
-
-} // namespace
-
 void scanOnCpu(const PicturePlane& source, int axis, PicturePlane& target, const RunSettings& run)
 {
 	assert(source.counts.size() == target.counts.size() && source.width == target.width);
@@ -222,6 +215,7 @@ void scanOnCpu(const PicturePlane& source, int axis, PicturePlane& target, const
 					});
 		return;
 	}
+	constexpr std::size_t kBand = 64; // columns summed at a time per thread
 	parallelFor((row / 4 + kBand - 1) / kBand, run.threads,
 				[&](std::size_t band)
 				{

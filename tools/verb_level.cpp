@@ -97,11 +97,6 @@ std::string cornerText(glm::dvec3 p)
 	return numberText(p.x) + "," + numberText(p.y) + "," + numberText(p.z);
 }
 
-std::size_t aroundOf(const Level& level)
-{
-	return sumOver(level.meshes, [](const Mesh& mesh) { return mesh.around ? mesh.triangle_count : 0; });
-}
-
 // The files that `-o` stands for: itself, or NAME-X-Z.glb for each cell of a grid, NAME-X-Y-Z.glb where it is higher than one.
 std::vector<std::string> cellFiles(const CellOptions& options, const std::string& file)
 {
@@ -145,7 +140,7 @@ void cutCells(const Level& level, const CellOptions& options, Facts& facts, cons
 		{
 			continue;
 		}
-		const std::size_t around = aroundOf(cell);
+		const std::size_t around = sumOver(cell.meshes, [](const Mesh& mesh) { return mesh.around ? mesh.triangle_count : 0; });
 		Facts& item = items.emplace_back();
 		if (options.grid)
 		{

@@ -14,14 +14,6 @@ namespace nook
 namespace
 {
 
-// Pictures are decoded one at a time, and a thread pool would count against the memory limit. OpenImageIO starts its own pool at
-// the first call, whatever the settings.
-void keepToOneThread()
-{
-	OIIO::attribute("threads", 1);
-	OIIO::attribute("exr_threads", -1);
-}
-
 [[noreturn]] void refuse(const std::string& name, const std::string& reason)
 {
 	std::string line = reason;
@@ -154,5 +146,12 @@ int main(int argc, char** argv)
 	using namespace nook;
 	constexpr std::array<WorkerFunction, 2> kFunctions{
 		{{kDecode, answerImage<decodedImage>}, {kDecodeAlphas, answerAlphas<decodedAlpha>}}};
+	// Pictures are decoded one at a time, and a thread pool would count against the memory limit. OpenImageIO starts its own pool
+	// at the first call, whatever the settings.
+	const auto keepToOneThread = []
+	{
+		OIIO::attribute("threads", 1);
+		OIIO::attribute("exr_threads", -1);
+	};
 	return serveRequests(argc, argv, kFunctions, keepToOneThread);
 }

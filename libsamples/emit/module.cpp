@@ -102,12 +102,6 @@ std::string placeMacro(const std::string& name, int number, int vulkan_number)
 		   name + " " + std::to_string(number) + "\n#endif\n#endif\n";
 }
 
-// Does the module read tiles and the pictures of its passes through macros?
-bool hasMacros(const ModuleSettings& settings)
-{
-	return settings.textures != ModuleTextures::fixed || isHlsl(settings);
-}
-
 bool isSeparate(const ModuleSettings& settings)
 {
 	return settings.target == GlslTarget::vulkan && settings.textures == ModuleTextures::separate;
@@ -184,7 +178,7 @@ std::string madeNormalText(const Input& input)
 std::string readText(const ModuleSettings& settings, const std::string& declaration, const std::string& head,
 					 const std::string& call, const std::string& fetch)
 {
-	if (!hasMacros(settings))
+	if (settings.textures == ModuleTextures::fixed && !isHlsl(settings))
 	{
 		return declaration + head + "\n{\n\treturn " + fetch + ";\n}\n";
 	}
@@ -266,12 +260,7 @@ std::string headOf(const ModuleSettings& settings)
 				: "");
 }
 
-std::string versionLine(GlslTarget target)
-{
-	constexpr std::array<const char*, 5> lines{"#version 330 core\n", "#version 430 core\n", "#version 300 es\n", "#version 450\n",
-											   ""};
-	return lines[static_cast<std::size_t>(target)];
-}
+constexpr std::array kVersionLines{"#version 330 core\n", "#version 430 core\n", "#version 300 es\n", "#version 450\n", ""};
 
 // An array of constants. `space`: between the elements.
 std::string arrayText(const ModuleSettings& settings, const std::string& type, const std::string& name,
@@ -574,7 +563,8 @@ std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& contex
 							 "#ifndef NOOK_SKY\n#define NOOK_SKY 1e30\n#endif\n" + blockText(settings) +
 							 (writer.uses("nook_pass") ? passText(settings) : "") + withIntegers(settings, inputs + functions) +
 							 (whole ? mainText(settings) : "\n#endif // " + guard + "\n");
-	return (whole ? versionLine(settings.target) : "") + head + (isHlsl(settings) ? toHlsl(text) : text);
+	return (whole ? kVersionLines[static_cast<std::size_t>(settings.target)] : "") + head +
+		   (isHlsl(settings) ? toHlsl(text) : text);
 }
 
 // A module in the kernels' subset of GLSL as HLSL. Declarations of resources already are HLSL, but for the names of types.

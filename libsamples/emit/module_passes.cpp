@@ -166,12 +166,6 @@ std::string plural(int count, const std::string& word)
 	return std::to_string(count) + " " + word + (count == 1 ? "" : "s");
 }
 
-// "; at most 10 depth reads", or nothing.
-std::string readsText(int reads)
-{
-	return reads > 0 ? "; at most " + plural(reads, "depth read") + " per texel" : "";
-}
-
 std::string momentsText()
 {
 	return line("nookMoments(texel): levels 0 to 5 of nook_levels, RGBA32F; level 0 has half the size of the depth texture, "
@@ -216,7 +210,8 @@ std::string passLines(const ModuleSettings& settings, const ModuleMethod& method
 	for (const ShadePass& pass : planFor(settings, method).passes)
 	{
 		const std::string call = moduleCallOf(pass);
-		const std::string reads = readsText(depthReadsOf(settings, method, pass));
+		const int depths = depthReadsOf(settings, method, pass);
+		const std::string reads = depths > 0 ? "; at most " + plural(depths, "depth read") + " per texel" : "";
 		const std::string_view kernel = pass.kernel.call;
 		if (pass.of_pixel && call == row.open_kernel.call)
 		{
@@ -522,13 +517,6 @@ using PassesJson = nlohmann::ordered_json;
 constexpr std::array kPictureFormats{"scalar", "quad", "counts"};
 constexpr std::array kSlotNames{"nook_cells", "nook_packed", "nook_levels", "nook_tables", "nook_range"};
 
-std::string base64OfBytes(const void* values, std::size_t size)
-{
-	std::vector<uint8_t> bytes(size);
-	std::memcpy(bytes.data(), values, size);
-	return base64Of(bytes);
-}
-
 // Column = variant, row = sample, as modules read their tiles.
 PassesJson tileJson(const ShadeSamples& samples)
 {
@@ -536,23 +524,24 @@ PassesJson tileJson(const ShadeSamples& samples)
 	const std::size_t variants = samples.samples.size() / count;
 	const std::vector<glm::vec4> texels =
 		listOf(samples.samples.size(), [&](std::size_t i) { return samples.samples[i % variants * count + i / variants]; });
-	return {{"width", variants}, {"height", count}, {"texels", base64OfBytes(texels.data(), texels.size() * sizeof(glm::vec4))}};
+	return {{"width", variants},
+			{"height", count},
+			{"texels", base64Of({reinterpret_cast<const uint8_t*>(texels.data()), texels.size() * sizeof(glm::vec4)})}};
 }
 
 PassesJson passJson(const ShadePass& pass)
 {
-	PassesJson reads = PassesJson::array();
-	for (const ShadeRead& read : pass.reads)
-	{
-		reads.push_back({kSlotNames[static_cast<std::size_t>(read.slot)], read.picture});
-	}
+	const PassesJson reads = mapped(pass.reads,
+									[](const ShadeRead& read) -> PassesJson {
+										return {kSlotNames[static_cast<std::size_t>(read.slot)], read.picture};
+									});
 	const glm::ivec4 numbers = modulePassOf(pass.block, pass.kernel.call);
 	return {{"name", pass.kernel.name},
 			{"call", moduleCallOf(pass)},
 			{"picture", pass.picture},
 			{"level", pass.level},
 			{"layer", pass.layer},
-			{"reads", std::move(reads)},
+			{"reads", reads},
 			{"numbers", {numbers.x, numbers.y, numbers.z, numbers.w}}};
 }
 

@@ -503,12 +503,6 @@ std::string filled(const JsonValue& word, const Values& values)
 	return result;
 }
 
-std::string inFolder(const std::string& folder, const std::string& path)
-{
-	const bool stays = path.starts_with("/") || path.starts_with("builtin:") || folder == ".";
-	return stays ? path : folder + "/" + path;
-}
-
 int optional(const JsonValue& step, const char* field, int otherwise, int most)
 {
 	return step.has(field) ? static_cast<int>(step.at(field).integer(1, most)) : otherwise;
@@ -520,10 +514,7 @@ ListedCommand commandFromStep(const JsonValue& step, const Values& values)
 	ListedCommand command;
 	command.name = values.at("name") + "." + step.at("name").string();
 	const JsonValue words = step.at("command");
-	for (std::size_t i = 0; i < words.arraySize(); ++i)
-	{
-		command.words.push_back(filled(words.at(i), values));
-	}
+	command.words = listOf(words.arraySize(), [&](std::size_t i) { return filled(words.at(i), values); });
 	command.shares = optional(step, "shares", 1, kMaxPlanShares);
 	command.minutes = optional(step, "minutes", 0, kMaxMinutes);
 	command.mebibytes = optional(step, "memory_mib", 0, kMaxMebibytes);
@@ -653,7 +644,8 @@ std::vector<ListedCommand> readLevelList(const std::string& text, const std::str
 		addValues(values, root);
 		addValues(values, level);
 		values["name"] = level.at("name").string();
-		values["level"] = inFolder(here, level.at("level").string());
+		const std::string file = level.at("level").string();
+		values["level"] = file.starts_with("/") || file.starts_with("builtin:") || here == "." ? file : here + "/" + file;
 		values["here"] = here;
 		for (std::size_t s = 0; s < all.size(); ++s)
 		{

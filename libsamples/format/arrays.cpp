@@ -134,10 +134,10 @@ Source sourceOf(const PatternTile& tile, const TileQuality& quality, const EmitC
 	if (!tile.moves.empty())
 	{
 		SourceArray moves{stem + "_moves", macro + "_FRAMES", "pixels x, y that the tile moves by in each frame", {}};
-		for (const glm::ivec2& move : tile.moves)
-		{
-			moves.rows.push_back({static_cast<float>(move.x), static_cast<float>(move.y), 0.0f, 0.0f});
-		}
+		moves.rows = mapped(tile.moves,
+							[](const glm::ivec2& move) {
+								return Sample{static_cast<float>(move.x), static_cast<float>(move.y), 0.0f, 0.0f};
+							});
 		source.arrays.push_back(std::move(moves));
 	}
 	source.constants.push_back({macro + "_COUNT", static_cast<int>(count), "samples of a variant"});
@@ -364,11 +364,7 @@ std::string tileKtx2(const PatternTile& tile, const TileQuality& quality, const 
 	made.bytes.reserve(4 * texture.rgba.size());
 	for (const float value : texture.rgba)
 	{
-		const auto bits = bitsAs<uint32_t>(value);
-		for (int i = 0; i < 4; ++i)
-		{
-			made.bytes += static_cast<char>((bits >> (8 * i)) & 0xFFU);
-		}
+		add32(made.bytes, bitsAs<uint32_t>(value));
 	}
 	return ktx2Bytes(made);
 }

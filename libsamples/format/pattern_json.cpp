@@ -132,12 +132,7 @@ std::vector<double> readNumbers(const JsonValue& list, std::size_t count)
 	{
 		list.expected("an array of " + std::to_string(count) + ", one a point");
 	}
-	std::vector<double> numbers(count);
-	for (std::size_t i = 0; i < count; ++i)
-	{
-		numbers[i] = list.at(i).number();
-	}
-	return numbers;
+	return listOf(count, [&list](std::size_t i) { return list.at(i).number(); });
 }
 
 } // namespace
@@ -326,11 +321,7 @@ Pattern readSamples(const JsonValue& object, Domain domain, bool weights_given)
 	{
 		points.expected("an array of 1 to " + std::to_string(kMaxCount) + " points");
 	}
-	pattern.points.resize(count);
-	for (std::size_t i = 0; i < count; ++i)
-	{
-		pattern.points[i] = readPoint(points.at(i), domain);
-	}
+	pattern.points = listOf(count, [&](std::size_t i) { return readPoint(points.at(i), domain); });
 	if (weights_given)
 	{
 		const JsonValue weights = object.at("weights");

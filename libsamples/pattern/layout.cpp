@@ -279,12 +279,12 @@ std::vector<glm::dvec3> poissonPoints(const Layout& layout, Random& random)
 
 std::vector<glm::dvec3> haltonPoints(const Layout& layout)
 {
-	std::vector<glm::dvec3> free;
-	for (unsigned k = 1; k <= layout.freeCount(); ++k)
+	const auto freePoint = [&layout](std::size_t i)
 	{
-		free.push_back(pointOf(layout, {radicalInverse(k, 2), radicalInverse(k, 3), radicalInverse(k, 5)}));
-	}
-	return layout.expand(free);
+		const auto k = static_cast<unsigned>(i + 1);
+		return pointOf(layout, {radicalInverse(k, 2), radicalInverse(k, 3), radicalInverse(k, 5)});
+	};
+	return layout.expand(listOf(layout.freeCount(), freePoint));
 }
 
 std::vector<glm::dvec3> vogelPoints(const Layout& layout)

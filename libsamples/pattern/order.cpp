@@ -5,6 +5,7 @@
 // (QuadraticForm). Variants are ordered one after the other. Each next sample minimises this error together with that of the
 // neighbouring variants' prefixes that are already ordered, because no filter can correct an error they all share. Opposite samples
 // stay together, and a centre stays first.
+#include "core/lists.h"
 #include "core/random.h"
 #include "pattern/energy.h"
 #include "pattern/methods.h"
@@ -398,12 +399,7 @@ Points reorder(Order order, const Layout& layout, const Points& points)
 		return points;
 	}
 	const Points free = layout.freePoints(points);
-	Points sorted;
-	for (const std::size_t i : farthestFirst(layout, free))
-	{
-		sorted.push_back(free[i]);
-	}
-	return layout.expand(sorted);
+	return layout.expand(mapped(farthestFirst(layout, free), [&free](std::size_t i) { return free[i]; }));
 }
 
 } // namespace nook

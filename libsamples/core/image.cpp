@@ -196,80 +196,7 @@ private:
 	std::vector<Decoded<AlphaImage>> m_decoded;
 };
 
-} // namespace
-
-Image decodeImage(std::string_view bytes, const std::string& name)
-{
-	// Deflate expands at most 1032 times, and each byte becomes a 4-byte float.
-	const IsolationLimits limits{std::min(kTables + 4200 * bytes.size(), kMostReadingMemory),
-								 kTime_s + static_cast<int>(bytes.size() / kBytesPerSecond)};
-	Decoded<Image> decoded;
-	for (const char* const worker : {looksExr(bytes) ? kExrWorker : kPictureWorker, kImageWorker})
-	{
-		if (worker == kImageWorker && !hasWorker(worker))
-		{
-			break;
-		}
-		isolate(
-			ask(worker, kDecode), name, limits,
-			[&](ValueWriter& to)
-			{
-				to.text(name);
-				to.values(bytes);
-			},
-			[&](ValueReader& from) { receive(decoded, from); });
-		if (decoded.image)
-		{
-			return std::move(*decoded.image);
-		}
-	}
-	refuseDeclined(name, decoded.defect);
-}
-
-std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all, std::size_t max_texels)
-{
-	AlphaDecoder decoder(pictures, all, max_texels);
-	const auto isExr = [](const EncodedAlpha& picture)
-	{
-		return looksExr(picture.path.empty() ? picture.bytes : beginOf(picture.path));
-	};
-	decoder.askBy(kExrWorker, isExr);
-	decoder.askBy(kPictureWorker, [&](const EncodedAlpha& picture) { return !isExr(picture); });
-	if (!decoder.isDone() && hasWorker(kImageWorker))
-	{
-		decoder.askBy(kImageWorker, [](const EncodedAlpha& /*picture*/) { return true; });
-	}
-	return decoder.takeImages();
-}
-
-Image readImage(const std::string& path)
-{
-	return decodeImage(readFile(path), path); // throws with the system's reason
-}
-
-std::string exrBytes(const Image& image)
-{
-	assert(image.values.size() == valuesOf(image.width_px, image.height_px, static_cast<int>(image.channels.size())));
-	ImageToEncode exr{.width_px = image.width_px, .height_px = image.height_px};
-	exr.channels = image.channels;
-	exr.attributes = {{"compression", "zip"}, {"capDate", ""}};
-	exr.matrices = image.matrices;
-	return encoded(std::move(exr), image.values.data(), image.notes);
-}
-
-std::string exrBytes(int width_px, int height_px, std::span<const float> rgba, const Notes& notes)
-{
-	assert(rgba.size() == valuesOf(width_px, height_px, 4));
-	ImageToEncode exr{.width_px = width_px, .height_px = height_px};
-	exr.channels = {"R", "G", "B", "A"};
-	exr.attributes = {{"compression", "none"}, {"capDate", ""}};
-	return encoded(std::move(exr), rgba.data(), notes);
-}
-
 // Writes nook's pictures as PNG with libpng, byte for byte what OpenImageIO 2.4 writes. Needs no worker because it reads no file.
-
-namespace
-{
 
 struct PngPicture
 {
@@ -383,6 +310,74 @@ std::string fileOf(const PngPicture& picture, const char* colours, const Notes& 
 }
 
 } // namespace
+
+Image decodeImage(std::string_view bytes, const std::string& name)
+{
+	// Deflate expands at most 1032 times, and each byte becomes a 4-byte float.
+	const IsolationLimits limits{std::min(kTables + 4200 * bytes.size(), kMostReadingMemory),
+								 kTime_s + static_cast<int>(bytes.size() / kBytesPerSecond)};
+	Decoded<Image> decoded;
+	for (const char* const worker : {looksExr(bytes) ? kExrWorker : kPictureWorker, kImageWorker})
+	{
+		if (worker == kImageWorker && !hasWorker(worker))
+		{
+			break;
+		}
+		isolate(
+			ask(worker, kDecode), name, limits,
+			[&](ValueWriter& to)
+			{
+				to.text(name);
+				to.values(bytes);
+			},
+			[&](ValueReader& from) { receive(decoded, from); });
+		if (decoded.image)
+		{
+			return std::move(*decoded.image);
+		}
+	}
+	refuseDeclined(name, decoded.defect);
+}
+
+std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all, std::size_t max_texels)
+{
+	AlphaDecoder decoder(pictures, all, max_texels);
+	const auto isExr = [](const EncodedAlpha& picture)
+	{
+		return looksExr(picture.path.empty() ? picture.bytes : beginOf(picture.path));
+	};
+	decoder.askBy(kExrWorker, isExr);
+	decoder.askBy(kPictureWorker, [&](const EncodedAlpha& picture) { return !isExr(picture); });
+	if (!decoder.isDone() && hasWorker(kImageWorker))
+	{
+		decoder.askBy(kImageWorker, [](const EncodedAlpha& /*picture*/) { return true; });
+	}
+	return decoder.takeImages();
+}
+
+Image readImage(const std::string& path)
+{
+	return decodeImage(readFile(path), path); // throws with the system's reason
+}
+
+std::string exrBytes(const Image& image)
+{
+	assert(image.values.size() == valuesOf(image.width_px, image.height_px, static_cast<int>(image.channels.size())));
+	ImageToEncode exr{.width_px = image.width_px, .height_px = image.height_px};
+	exr.channels = image.channels;
+	exr.attributes = {{"compression", "zip"}, {"capDate", ""}};
+	exr.matrices = image.matrices;
+	return encoded(std::move(exr), image.values.data(), image.notes);
+}
+
+std::string exrBytes(int width_px, int height_px, std::span<const float> rgba, const Notes& notes)
+{
+	assert(rgba.size() == valuesOf(width_px, height_px, 4));
+	ImageToEncode exr{.width_px = width_px, .height_px = height_px};
+	exr.channels = {"R", "G", "B", "A"};
+	exr.attributes = {{"compression", "none"}, {"capDate", ""}};
+	return encoded(std::move(exr), rgba.data(), notes);
+}
 
 std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> rgb, const Notes& notes)
 {

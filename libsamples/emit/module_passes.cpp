@@ -320,6 +320,107 @@ std::string presetsText(const ModuleSettings& settings, const ModuleMethod& meth
 	return joinedText(presetsOf(settings, method), ", ", [](const auto& preset) { return preset.first + " = " + preset.second; });
 }
 
+// The passes, pictures and uniform block of one picture as JSON, for programs that draw emitted modules.
+
+using PassesJson = nlohmann::ordered_json;
+
+constexpr std::array kPictureFormats{"scalar", "quad", "counts"};
+constexpr std::array kSlotNames{"nook_cells", "nook_packed", "nook_levels", "nook_tables", "nook_range"};
+
+// Column = variant, row = sample, as modules read their tiles.
+PassesJson tileJson(const ShadeSamples& samples)
+{
+	const auto count = static_cast<std::size_t>(samples.count);
+	const std::size_t variants = samples.samples.size() / count;
+	const std::vector<glm::vec4> texels =
+		listOf(samples.samples.size(), [&](std::size_t i) { return samples.samples[i % variants * count + i / variants]; });
+	return {{"width", variants},
+			{"height", count},
+			{"texels", base64Of({reinterpret_cast<const uint8_t*>(texels.data()), texels.size() * sizeof(glm::vec4)})}};
+}
+
+PassesJson passJson(const ShadePass& pass)
+{
+	const PassesJson reads = mapped(pass.reads,
+									[](const ShadeRead& read) -> PassesJson {
+										return {kSlotNames[static_cast<std::size_t>(read.slot)], read.picture};
+									});
+	const glm::ivec4 numbers = modulePassOf(pass.block, pass.kernel.call);
+	return {{"name", pass.kernel.name},
+			{"call", moduleCallOf(pass)},
+			{"picture", pass.picture},
+			{"level", pass.level},
+			{"layer", pass.layer},
+			{"reads", reads},
+			{"numbers", {numbers.x, numbers.y, numbers.z, numbers.w}}};
+}
+
+// The first `count` samples. Throws Error (invalid_input) where there are fewer, or where they were not made for it.
+void shorten(PatternFile& file, std::size_t count, const std::string& path)
+{
+	Pattern& pattern = file.pattern;
+	if (count > pattern.count())
+	{
+		refuseInput(path + ": --counts", std::to_string(pattern.count()) + " samples", std::to_string(count) + " or more");
+	}
+	if (count == pattern.count())
+	{
+		return;
+	}
+	if (!file.recipe || file.recipe->order != Order::progressive)
+	{
+		refuseInput(path + ": recipe", "a pattern whose first samples are none", "one made with --order progressive");
+	}
+	pattern.points.resize(count);
+	pattern.powers.clear();
+	pattern.weights = exactCells(pattern.domain, pattern.points, {}).integrals;
+}
+
+// The first `count` samples of each variant of a tile. Their weights stay what they were made for, but for their sum.
+void shorten(const TileFile& file, std::size_t count, const std::string& path, std::vector<Pattern>& variants)
+{
+	if (count > variants.front().count())
+	{
+		refuseInput(path + ": --counts", std::to_string(variants.front().count()) + " samples", std::to_string(count) + " or more");
+	}
+	if (count < variants.front().count() && !(file.recipe && file.recipe->progressive))
+	{
+		throw Error(ExitCode::invalid_input, path + ": --counts: found a tile of " + std::to_string(variants.front().count()) +
+												 " samples, expected all of them, or one made with --progressive");
+	}
+	for (Pattern& variant : variants)
+	{
+		if (count == variant.count())
+		{
+			return;
+		}
+		variant.points.resize(count);
+		variant.weights.resize(count);
+		const double sum = sumOver(variant.weights);
+		if (!(sum > 0.0))
+		{
+			refuseInput(path + ": --counts", "a variant whose first " + std::to_string(count) + " samples have no weight", "some");
+		}
+		for (double& w : variant.weights)
+		{
+			w /= sum;
+		}
+	}
+}
+
+// Variants in a window: those of the tile, or of the method's own samples.
+std::size_t windowOf(const ModuleSettings& settings, const ModuleMethod& method)
+{
+	if (!method.variants.empty())
+	{
+		return method.variants.size() / static_cast<std::size_t>(layersOf(method));
+	}
+	ShadeSettings shade = method.shade.value_or(settings.shade);
+	shade.method = method.method;
+	const auto side = static_cast<std::size_t>(ownSamples(shade).size);
+	return side * side;
+}
+
 } // namespace
 
 glm::ivec4 modulePassOf(const ShadeBlock& block, std::string_view call)
@@ -507,46 +608,6 @@ std::string introductionOf(const ModuleSettings& settings)
 	return text;
 }
 
-// The passes, pictures and uniform block of one picture as JSON, for programs that draw emitted modules.
-
-namespace
-{
-
-using PassesJson = nlohmann::ordered_json;
-
-constexpr std::array kPictureFormats{"scalar", "quad", "counts"};
-constexpr std::array kSlotNames{"nook_cells", "nook_packed", "nook_levels", "nook_tables", "nook_range"};
-
-// Column = variant, row = sample, as modules read their tiles.
-PassesJson tileJson(const ShadeSamples& samples)
-{
-	const auto count = static_cast<std::size_t>(samples.count);
-	const std::size_t variants = samples.samples.size() / count;
-	const std::vector<glm::vec4> texels =
-		listOf(samples.samples.size(), [&](std::size_t i) { return samples.samples[i % variants * count + i / variants]; });
-	return {{"width", variants},
-			{"height", count},
-			{"texels", base64Of({reinterpret_cast<const uint8_t*>(texels.data()), texels.size() * sizeof(glm::vec4)})}};
-}
-
-PassesJson passJson(const ShadePass& pass)
-{
-	const PassesJson reads = mapped(pass.reads,
-									[](const ShadeRead& read) -> PassesJson {
-										return {kSlotNames[static_cast<std::size_t>(read.slot)], read.picture};
-									});
-	const glm::ivec4 numbers = modulePassOf(pass.block, pass.kernel.call);
-	return {{"name", pass.kernel.name},
-			{"call", moduleCallOf(pass)},
-			{"picture", pass.picture},
-			{"level", pass.level},
-			{"layer", pass.layer},
-			{"reads", reads},
-			{"numbers", {numbers.x, numbers.y, numbers.z, numbers.w}}};
-}
-
-} // namespace
-
 std::string passesJson(const ShadeFrame& frame, const ShadeSamples& samples, const ShadeSettings& settings,
 					   std::string_view version)
 {
@@ -580,77 +641,6 @@ std::string passesJson(const ShadeFrame& frame, const ShadeSamples& samples, con
 	json["passes"] = std::move(passes);
 	return jsonLine(json) + "\n";
 }
-
-namespace
-{
-
-// The first `count` samples. Throws Error (invalid_input) where there are fewer, or where they were not made for it.
-void shorten(PatternFile& file, std::size_t count, const std::string& path)
-{
-	Pattern& pattern = file.pattern;
-	if (count > pattern.count())
-	{
-		refuseInput(path + ": --counts", std::to_string(pattern.count()) + " samples", std::to_string(count) + " or more");
-	}
-	if (count == pattern.count())
-	{
-		return;
-	}
-	if (!file.recipe || file.recipe->order != Order::progressive)
-	{
-		refuseInput(path + ": recipe", "a pattern whose first samples are none", "one made with --order progressive");
-	}
-	pattern.points.resize(count);
-	pattern.powers.clear();
-	pattern.weights = exactCells(pattern.domain, pattern.points, {}).integrals;
-}
-
-// The first `count` samples of each variant of a tile. Their weights stay what they were made for, but for their sum.
-void shorten(const TileFile& file, std::size_t count, const std::string& path, std::vector<Pattern>& variants)
-{
-	if (count > variants.front().count())
-	{
-		refuseInput(path + ": --counts", std::to_string(variants.front().count()) + " samples", std::to_string(count) + " or more");
-	}
-	if (count < variants.front().count() && !(file.recipe && file.recipe->progressive))
-	{
-		throw Error(ExitCode::invalid_input, path + ": --counts: found a tile of " + std::to_string(variants.front().count()) +
-												 " samples, expected all of them, or one made with --progressive");
-	}
-	for (Pattern& variant : variants)
-	{
-		if (count == variant.count())
-		{
-			return;
-		}
-		variant.points.resize(count);
-		variant.weights.resize(count);
-		const double sum = sumOver(variant.weights);
-		if (!(sum > 0.0))
-		{
-			refuseInput(path + ": --counts", "a variant whose first " + std::to_string(count) + " samples have no weight", "some");
-		}
-		for (double& w : variant.weights)
-		{
-			w /= sum;
-		}
-	}
-}
-
-// Variants in a window: those of the tile, or of the method's own samples.
-std::size_t windowOf(const ModuleSettings& settings, const ModuleMethod& method)
-{
-	if (!method.variants.empty())
-	{
-		return method.variants.size() / static_cast<std::size_t>(layersOf(method));
-	}
-	ShadeSettings shade = method.shade.value_or(settings.shade);
-	shade.method = method.method;
-	const auto side = static_cast<std::size_t>(ownSamples(shade).size);
-	return side * side;
-}
-
-} // namespace
 
 std::string readSamples(const std::string& path, std::optional<std::size_t> count, const ShadeSettings& shade, ModuleMethod& method)
 {

@@ -456,33 +456,6 @@ std::string withoutLineEnds(std::string text)
 	return text;
 }
 
-} // namespace
-
-std::string moduleScript(const ModuleSettings& settings, const EmitContext& context, std::string_view glsl)
-{
-	Translation script = translated(assets::nook_block_h, javascript);
-	const std::vector<Field>& fields = settingsOf(script, settings);
-	std::string text = commentBlock(notesOf(context, {}), "// ") +
-					   "//\n// Fills the uniform block of a GLSL module that nook emitted, and holds its samples: ECMAScript 2022, "
-					   "no dependencies.\n" +
-					   defaultsText(fields) + blockMembersText(settings) + script.functions + kFill;
-	for (const ModuleMethod& method : settings.methods)
-	{
-		const MethodRow& row = rowOf(method.method);
-		const std::string parts = reachText(settings, method) + (fromTexture(settings, method) ? texelsText(method) : "");
-		text += "\n/** " + std::string(row.what) + " */\nexport const " + exportedName(row) + " = {\n" + parts + "};\n";
-	}
-	const bool wgsl = settings.target == GlslTarget::wgsl;
-	const std::string module =
-		wgsl ? "\n/** The WGSL module: put the code that calls it behind it. */\nexport const wgsl = "
-			 : "\n/** The GLSL module: put your #version before it, and the code that calls it behind it. */\nexport const glsl = ";
-	text += glsl.empty() ? "" : module + templateOf(glsl) + ";\n";
-	return withoutLineEnds(text);
-}
-
-namespace
-{
-
 constexpr const char* kSharpFill = R"(
 	static bool IsFinite(double value)
 	{
@@ -545,6 +518,28 @@ std::string pythonValue(const std::string& value)
 }
 
 } // namespace
+
+std::string moduleScript(const ModuleSettings& settings, const EmitContext& context, std::string_view glsl)
+{
+	Translation script = translated(assets::nook_block_h, javascript);
+	const std::vector<Field>& fields = settingsOf(script, settings);
+	std::string text = commentBlock(notesOf(context, {}), "// ") +
+					   "//\n// Fills the uniform block of a GLSL module that nook emitted, and holds its samples: ECMAScript 2022, "
+					   "no dependencies.\n" +
+					   defaultsText(fields) + blockMembersText(settings) + script.functions + kFill;
+	for (const ModuleMethod& method : settings.methods)
+	{
+		const MethodRow& row = rowOf(method.method);
+		const std::string parts = reachText(settings, method) + (fromTexture(settings, method) ? texelsText(method) : "");
+		text += "\n/** " + std::string(row.what) + " */\nexport const " + exportedName(row) + " = {\n" + parts + "};\n";
+	}
+	const bool wgsl = settings.target == GlslTarget::wgsl;
+	const std::string module =
+		wgsl ? "\n/** The WGSL module: put the code that calls it behind it. */\nexport const wgsl = "
+			 : "\n/** The GLSL module: put your #version before it, and the code that calls it behind it. */\nexport const glsl = ";
+	text += glsl.empty() ? "" : module + templateOf(glsl) + ";\n";
+	return withoutLineEnds(text);
+}
 
 std::string moduleSharp(const ModuleSettings& settings, const EmitContext& context)
 {

@@ -65,124 +65,17 @@ std::string tileCommandOn(const TileRecipe& recipe, const std::string& base)
 	return command;
 }
 
-} // namespace
-
-double lambdaOf(const TileRecipe& recipe)
-{
-	if (recipe.lambda > 0.0)
-	{
-		return recipe.lambda;
-	}
-	return recipe.filters.empty() ? kPointsLambda : recipe.frames > 1 ? kFramesLambda : kFilterLambda;
-}
-
-double tileError(Domain domain, const VariantUnion& all, std::size_t variants, double lambda, EnergyGradient& gradient, int threads)
-{
-	const auto k = static_cast<double>(variants);
-	const std::size_t count = all.points.size() / variants;
-	std::vector<double> shares(all.weights);
-	for (double& w : shares)
-	{
-		w /= k;
-	}
-	double value = squaredError(domain, Ensemble::plane, Part::whole, all.points, shares, &gradient, threads);
-	for (double& g : gradient.weights)
-	{
-		g /= k;
-	}
-	EnergyGradient own;
-	for (std::size_t v = 0; v < variants; ++v)
-	{
-		const std::span<const glm::dvec3> points(all.points.data() + v * count, count);
-		const std::span<const double> weights(all.weights.data() + v * count, count);
-		value += lambda / k * squaredError(domain, Ensemble::plane, Part::whole, points, weights, &own, 1);
-		for (std::size_t i = 0; i < count; ++i)
-		{
-			gradient.points[v * count + i] += lambda / k * own.points[i];
-			gradient.weights[v * count + i] += lambda / k * own.weights[i];
-		}
-	}
-	return value;
-}
-
-TileTime timeOf(const TileRecipe& recipe)
-{
-	return {recipe.frames, recipe.ema, recipe.moves ? tileMoves(recipe.size, recipe.frames) : std::vector<glm::ivec2>{}};
-}
-
-TileShares seenShares(const TileRecipe& recipe)
-{
-	TileShares all;
-	if (recipe.filters.empty())
-	{
-		const auto pixels = static_cast<std::size_t>(recipe.size * recipe.size);
-		return {recipe.size, 1, std::vector<double>(pixels, 1.0 / static_cast<double>(pixels))};
-	}
-	const TileTime time = timeOf(recipe);
-	// Normalises an error by that of equally many independent variants.
-	const auto add = [&all](const TileShares& shares, double scale)
-	{
-		addShares(all, shares, scale / shares.pairs[0]);
-	};
-	const double sum = sumOver(recipe.filters, [](const TileFilter& filter) { return filter.share; });
-	for (const TileFilter& filter : recipe.filters)
-	{
-		const double share = filter.share / sum;
-		add(sharesOf(recipe.size, filter, time), share);
-		const std::vector<TileFilter> halves = recipe.robust ? halvesOf(filter) : std::vector<TileFilter>{};
-		for (const TileFilter& half : halves)
-		{
-			add(sharesOf(recipe.size, half, time), share / static_cast<double>(halves.size()));
-		}
-		if (recipe.frames > 1)
-		{
-			add(sharesOf(recipe.size, filter, time, 0), share);
-			for (int last = 2; last < recipe.frames; last *= 2) // after a camera cut
-			{
-				add(sharesOf(recipe.size, filter, time, last), share * kPrefix);
-			}
-		}
-	}
-	if (recipe.frames > 1)
-	{
-		// Single pixels, where the filter finds no similar neighbours: with a still and with a panning camera.
-		const std::vector<glm::ivec2> pans =
-			recipe.size <= kPannedSize ? std::vector<glm::ivec2>{{0, 0}, {1, 0}, {0, 1}, {1, 1}} : std::vector<glm::ivec2>{{0, 0}};
-		for (const glm::ivec2 pan : pans)
-		{
-			add(sharesOf(recipe.size, tileFilterNamed("none"), time, 0, pan), 1.0 / static_cast<double>(pans.size()));
-		}
-	}
-	return all;
-}
-
-TileShares sharesOf(const TileRecipe& recipe)
-{
-	TileShares all = seenShares(recipe);
-	all.pairs[0] += lambdaOf(recipe);
-	return all;
-}
-
-int variantOfFrame(const PatternTile& tile, int frame)
-{
-	const int f = frame % tile.frames;
-	if (tile.moves.empty())
-	{
-		return f * tile.size * tile.size;
-	}
-	const glm::ivec2 move = tile.moves[static_cast<std::size_t>(f)];
-	return move.y % tile.size * tile.size + move.x % tile.size;
-}
-
-namespace
-{
-
 // Memory per sample of the finished tile, its measurement and its text, measured: docs/measurements/patterns.md.
 constexpr uint64_t kFinishedBytes = 400;
 
 uint64_t samplesOf(const TileRecipe& recipe, std::size_t count)
 {
 	return static_cast<uint64_t>(recipe.size * recipe.size * (recipe.moves ? 1 : recipe.frames)) * count;
+}
+
+TileTime timeOf(const TileRecipe& recipe)
+{
+	return {recipe.frames, recipe.ema, recipe.moves ? tileMoves(recipe.size, recipe.frames) : std::vector<glm::ivec2>{}};
 }
 
 void checkTileFilters(const TileRecipe& recipe)
@@ -227,85 +120,6 @@ void checkTime(const TileRecipe& recipe)
 										 std::to_string(recipe.size * recipe.size) + ", the pixels of the tile");
 	}
 }
-
-} // namespace
-
-uint64_t tileMemory(const TileRecipe& recipe, const Pattern& base, int threads)
-{
-	constexpr uint64_t kProgram = uint64_t{20} << 20U; // huge pages round each heap up to 2 MiB
-	return kProgram + std::max(pointsMemory(base, recipe, threads), samplesOf(recipe, base.count()) * kFinishedBytes);
-}
-
-void checkTileSize(const TileRecipe& recipe, const Pattern& base, uint64_t memory_bytes, int threads)
-{
-	checkTileFilters(recipe);
-	if (base.domain == Domain::slice && !recipe.filters.empty() && stepsOfError(sharesOf(recipe), base.count()) > kMaxShareSteps)
-	{
-		throw Error(ExitCode::invalid_input, "size frames: found " + std::to_string(samplesOf(recipe, base.count())) +
-												 " slices, expected fewer; or one that moves");
-	}
-	const uint64_t need = memory_bytes > 0 ? tileMemory(recipe, base, threads) : 0;
-	if (need > memory_bytes)
-	{
-		throw Error(ExitCode::runtime, "memory: found a need of about " + needText(need) + " for " +
-										   std::to_string(samplesOf(recipe, base.count())) + " samples, expected at most " +
-										   capText(memory_bytes) +
-										   (recipe.frames > 1 && !recipe.moves ? "; or a tile that moves" : ""));
-	}
-}
-
-void checkTileRecipe(const TileRecipe& recipe, Domain domain)
-{
-	if (recipe.size < 2 || recipe.size > kMaxTileSize)
-	{
-		throw Error(ExitCode::usage, "size: expected a whole number from 2 to 128");
-	}
-	if (recipe.size > 8 && recipe.filters.empty())
-	{
-		throw Error(ExitCode::usage, "size: found " + std::to_string(recipe.size) + ", expected at most 8, or a filter");
-	}
-	checkTime(recipe);
-	if (recipe.starts < 0 || recipe.starts > 1000)
-	{
-		throw Error(ExitCode::usage, "starts: expected a whole number from 1 to 1000");
-	}
-	if (recipe.lambda != -1.0 && !(recipe.lambda > 0.0 && recipe.lambda <= 1e6))
-	{
-		throw Error(ExitCode::usage, "lambda: expected a number above 0, at most 1e6");
-	}
-	if (recipe.kind != TileKind::points && (recipe.lambda != -1.0 || recipe.starts != 0))
-	{
-		throw Error(ExitCode::usage, "lambda starts: the kinds even and random are not optimised; expected points");
-	}
-	if (domain == Domain::sphere)
-	{
-		throw Error(ExitCode::unsupported,
-					"a tile of sphere patterns: rotations leave no error on the sphere; expected disk, ball or hemisphere");
-	}
-	if (domain == Domain::slice && recipe.kind != TileKind::points)
-	{
-		throw Error(ExitCode::unsupported, "kind " + std::string(nameOf(recipe.kind)) +
-											   ": slices have azimuths and jitters of their own; expected points");
-	}
-	if (domain == Domain::ball && recipe.kind == TileKind::even)
-	{
-		throw Error(ExitCode::unsupported,
-					"kind even: rotations about the view axis are for disk and hemisphere; expected points or random");
-	}
-}
-
-std::string tileCommand(const TileRecipe& recipe, const std::string& pattern_file)
-{
-	return tileCommandOn(recipe, "--pattern " + pattern_file);
-}
-
-std::string sliceTileCommand(const TileRecipe& recipe, std::size_t count)
-{
-	return tileCommandOn(recipe, "--domain slice --count " + std::to_string(count));
-}
-
-namespace
-{
 
 void roundTile(PatternTile& tile)
 {
@@ -406,6 +220,182 @@ PatternTile descendedTile(const Pattern& base, const TileRecipe& recipe, const s
 }
 
 } // namespace
+
+double lambdaOf(const TileRecipe& recipe)
+{
+	if (recipe.lambda > 0.0)
+	{
+		return recipe.lambda;
+	}
+	return recipe.filters.empty() ? kPointsLambda : recipe.frames > 1 ? kFramesLambda : kFilterLambda;
+}
+
+double tileError(Domain domain, const VariantUnion& all, std::size_t variants, double lambda, EnergyGradient& gradient, int threads)
+{
+	const auto k = static_cast<double>(variants);
+	const std::size_t count = all.points.size() / variants;
+	std::vector<double> shares(all.weights);
+	for (double& w : shares)
+	{
+		w /= k;
+	}
+	double value = squaredError(domain, Ensemble::plane, Part::whole, all.points, shares, &gradient, threads);
+	for (double& g : gradient.weights)
+	{
+		g /= k;
+	}
+	EnergyGradient own;
+	for (std::size_t v = 0; v < variants; ++v)
+	{
+		const std::span<const glm::dvec3> points(all.points.data() + v * count, count);
+		const std::span<const double> weights(all.weights.data() + v * count, count);
+		value += lambda / k * squaredError(domain, Ensemble::plane, Part::whole, points, weights, &own, 1);
+		for (std::size_t i = 0; i < count; ++i)
+		{
+			gradient.points[v * count + i] += lambda / k * own.points[i];
+			gradient.weights[v * count + i] += lambda / k * own.weights[i];
+		}
+	}
+	return value;
+}
+
+TileShares seenShares(const TileRecipe& recipe)
+{
+	TileShares all;
+	if (recipe.filters.empty())
+	{
+		const auto pixels = static_cast<std::size_t>(recipe.size * recipe.size);
+		return {recipe.size, 1, std::vector<double>(pixels, 1.0 / static_cast<double>(pixels))};
+	}
+	const TileTime time = timeOf(recipe);
+	// Normalises an error by that of equally many independent variants.
+	const auto add = [&all](const TileShares& shares, double scale)
+	{
+		addShares(all, shares, scale / shares.pairs[0]);
+	};
+	const double sum = sumOver(recipe.filters, [](const TileFilter& filter) { return filter.share; });
+	for (const TileFilter& filter : recipe.filters)
+	{
+		const double share = filter.share / sum;
+		add(sharesOf(recipe.size, filter, time), share);
+		const std::vector<TileFilter> halves = recipe.robust ? halvesOf(filter) : std::vector<TileFilter>{};
+		for (const TileFilter& half : halves)
+		{
+			add(sharesOf(recipe.size, half, time), share / static_cast<double>(halves.size()));
+		}
+		if (recipe.frames > 1)
+		{
+			add(sharesOf(recipe.size, filter, time, 0), share);
+			for (int last = 2; last < recipe.frames; last *= 2) // after a camera cut
+			{
+				add(sharesOf(recipe.size, filter, time, last), share * kPrefix);
+			}
+		}
+	}
+	if (recipe.frames > 1)
+	{
+		// Single pixels, where the filter finds no similar neighbours: with a still and with a panning camera.
+		const std::vector<glm::ivec2> pans =
+			recipe.size <= kPannedSize ? std::vector<glm::ivec2>{{0, 0}, {1, 0}, {0, 1}, {1, 1}} : std::vector<glm::ivec2>{{0, 0}};
+		for (const glm::ivec2 pan : pans)
+		{
+			add(sharesOf(recipe.size, tileFilterNamed("none"), time, 0, pan), 1.0 / static_cast<double>(pans.size()));
+		}
+	}
+	return all;
+}
+
+TileShares sharesOf(const TileRecipe& recipe)
+{
+	TileShares all = seenShares(recipe);
+	all.pairs[0] += lambdaOf(recipe);
+	return all;
+}
+
+int variantOfFrame(const PatternTile& tile, int frame)
+{
+	const int f = frame % tile.frames;
+	if (tile.moves.empty())
+	{
+		return f * tile.size * tile.size;
+	}
+	const glm::ivec2 move = tile.moves[static_cast<std::size_t>(f)];
+	return move.y % tile.size * tile.size + move.x % tile.size;
+}
+
+uint64_t tileMemory(const TileRecipe& recipe, const Pattern& base, int threads)
+{
+	constexpr uint64_t kProgram = uint64_t{20} << 20U; // huge pages round each heap up to 2 MiB
+	return kProgram + std::max(pointsMemory(base, recipe, threads), samplesOf(recipe, base.count()) * kFinishedBytes);
+}
+
+void checkTileSize(const TileRecipe& recipe, const Pattern& base, uint64_t memory_bytes, int threads)
+{
+	checkTileFilters(recipe);
+	if (base.domain == Domain::slice && !recipe.filters.empty() && stepsOfError(sharesOf(recipe), base.count()) > kMaxShareSteps)
+	{
+		throw Error(ExitCode::invalid_input, "size frames: found " + std::to_string(samplesOf(recipe, base.count())) +
+												 " slices, expected fewer; or one that moves");
+	}
+	const uint64_t need = memory_bytes > 0 ? tileMemory(recipe, base, threads) : 0;
+	if (need > memory_bytes)
+	{
+		throw Error(ExitCode::runtime, "memory: found a need of about " + needText(need) + " for " +
+										   std::to_string(samplesOf(recipe, base.count())) + " samples, expected at most " +
+										   capText(memory_bytes) +
+										   (recipe.frames > 1 && !recipe.moves ? "; or a tile that moves" : ""));
+	}
+}
+
+void checkTileRecipe(const TileRecipe& recipe, Domain domain)
+{
+	if (recipe.size < 2 || recipe.size > kMaxTileSize)
+	{
+		throw Error(ExitCode::usage, "size: expected a whole number from 2 to 128");
+	}
+	if (recipe.size > 8 && recipe.filters.empty())
+	{
+		throw Error(ExitCode::usage, "size: found " + std::to_string(recipe.size) + ", expected at most 8, or a filter");
+	}
+	checkTime(recipe);
+	if (recipe.starts < 0 || recipe.starts > 1000)
+	{
+		throw Error(ExitCode::usage, "starts: expected a whole number from 1 to 1000");
+	}
+	if (recipe.lambda != -1.0 && !(recipe.lambda > 0.0 && recipe.lambda <= 1e6))
+	{
+		throw Error(ExitCode::usage, "lambda: expected a number above 0, at most 1e6");
+	}
+	if (recipe.kind != TileKind::points && (recipe.lambda != -1.0 || recipe.starts != 0))
+	{
+		throw Error(ExitCode::usage, "lambda starts: the kinds even and random are not optimised; expected points");
+	}
+	if (domain == Domain::sphere)
+	{
+		throw Error(ExitCode::unsupported,
+					"a tile of sphere patterns: rotations leave no error on the sphere; expected disk, ball or hemisphere");
+	}
+	if (domain == Domain::slice && recipe.kind != TileKind::points)
+	{
+		throw Error(ExitCode::unsupported, "kind " + std::string(nameOf(recipe.kind)) +
+											   ": slices have azimuths and jitters of their own; expected points");
+	}
+	if (domain == Domain::ball && recipe.kind == TileKind::even)
+	{
+		throw Error(ExitCode::unsupported,
+					"kind even: rotations about the view axis are for disk and hemisphere; expected points or random");
+	}
+}
+
+std::string tileCommand(const TileRecipe& recipe, const std::string& pattern_file)
+{
+	return tileCommandOn(recipe, "--pattern " + pattern_file);
+}
+
+std::string sliceTileCommand(const TileRecipe& recipe, std::size_t count)
+{
+	return tileCommandOn(recipe, "--domain slice --count " + std::to_string(count));
+}
 
 PatternTile generateTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run)
 {

@@ -223,39 +223,9 @@ void addUnderside(LevelBuilder& builder, const Grid& grid, std::size_t cells)
 	}
 }
 
-} // namespace
-
-Level makeHeightfield(std::size_t triangles)
-{
-	std::size_t cells = 1;
-	while (2 * cells * cells < triangles)
-	{
-		cells += 1;
-	}
-	const Grid grid(cells);
-	LevelBuilder builder;
-	builder.reserve((cells + 1) * (cells + 1) + 24 * cells + 1, 2 * cells * cells + 12 * cells);
-	builder.beginMesh("ground", builder.addMaterial("ground"));
-	addGround(builder, grid, cells);
-	addUnderside(builder, grid, cells);
-
-	const auto look = [&](const char* name, glm::dvec3 eye, glm::dvec3 target)
-	{
-		builder.addCamera(name, {eye.x, eye.y + grid.groundNear(eye.x, eye.z), eye.z},
-						  {target.x, target.y + grid.groundNear(target.x, target.z), target.z});
-	};
-	look("main", {40.0, 12.0, 200.0}, {-20.0, 0.0, 20.0});
-	look("valley", {-120.0, 2.0, 60.0}, {0.0, 5.0, -60.0});
-	look("above", {0.0, 220.0, 250.0}, {0.0, 0.0, 0.0});
-	return builder.finish();
-}
-
 // A tunnel of 60 m through a rock, with halls and narrow passages: as dense and as uneven as a scan. One closed surface: the wall,
 // out at one mouth, along the outside of the rock and in at the other mouth. This work is based on: K. Perlin, "Improving Noise",
 // 2002 (gradients at lattice points, smoothly interpolated).
-
-namespace
-{
 
 constexpr double kTunnelHalf = 30.0;  // m
 constexpr double kTunnelRadius = 3.4; // mean radius of the tunnel, m
@@ -452,6 +422,31 @@ private:
 };
 
 } // namespace
+
+Level makeHeightfield(std::size_t triangles)
+{
+	std::size_t cells = 1;
+	while (2 * cells * cells < triangles)
+	{
+		cells += 1;
+	}
+	const Grid grid(cells);
+	LevelBuilder builder;
+	builder.reserve((cells + 1) * (cells + 1) + 24 * cells + 1, 2 * cells * cells + 12 * cells);
+	builder.beginMesh("ground", builder.addMaterial("ground"));
+	addGround(builder, grid, cells);
+	addUnderside(builder, grid, cells);
+
+	const auto look = [&](const char* name, glm::dvec3 eye, glm::dvec3 target)
+	{
+		builder.addCamera(name, {eye.x, eye.y + grid.groundNear(eye.x, eye.z), eye.z},
+						  {target.x, target.y + grid.groundNear(target.x, target.z), target.z});
+	};
+	look("main", {40.0, 12.0, 200.0}, {-20.0, 0.0, 20.0});
+	look("valley", {-120.0, 2.0, 60.0}, {0.0, 5.0, -60.0});
+	look("above", {0.0, 220.0, 250.0}, {0.0, 0.0, 0.0});
+	return builder.finish();
+}
 
 Level makeCave(std::size_t triangles)
 {

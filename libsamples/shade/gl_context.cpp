@@ -138,6 +138,62 @@ constexpr const char* kVertexSource = R"(void main()
 }
 )";
 
+std::vector<float> readFloats(const GlTexture& texture, unsigned format, std::size_t channels)
+{
+	const PictureShape& shape = texture.shape();
+	std::vector<float> values(channels * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
+	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
+	glBindFramebuffer(GL_FRAMEBUFFER, frame);
+	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
+	glPixelStorei(GL_PACK_ALIGNMENT, 4);
+	glReadPixels(0, 0, shape.width, shape.height, format, GL_FLOAT, values.data());
+	checkGlErrors();
+	return values;
+}
+
+// This work is based on: W. D. Hillis, G. L. Steele, "Data Parallel Algorithms", CACM 1986 (sums by doubling distances).
+
+// One work group per row or column; processes 256 entries at a time and carries the sum along.
+constexpr const char* kSource = R"(
+layout(local_size_x = 256) in;
+uniform highp usampler2DArray nook_source;
+layout(rgba32ui) writeonly uniform uimage2D nook_target;
+shared uvec4 nook_sums[2][256];
+void main()
+{
+	int line = int(gl_WorkGroupID.x);
+	int lane = int(gl_LocalInvocationID.x);
+	ivec2 size = textureSize(nook_source, 0).xy;
+	int count = AXIS == 0 ? size.x : size.y;
+	uvec4 before = uvec4(0u);
+	for (int first = 0; first < count; first += 256)
+	{
+		int at = first + lane;
+		ivec2 texel = AXIS == 0 ? ivec2(at, line) : ivec2(line, at);
+		nook_sums[0][lane] = at < count ? texelFetch(nook_source, ivec3(texel, 0), 0) : uvec4(0u);
+		int from = 0;
+		barrier();
+		for (int stride = 1; stride < 256; stride *= 2)
+		{
+			uvec4 sum = nook_sums[from][lane];
+			if (lane >= stride)
+			{
+				sum += nook_sums[from][lane - stride];
+			}
+			nook_sums[1 - from][lane] = sum;
+			from = 1 - from;
+			barrier();
+		}
+		if (at < count)
+		{
+			imageStore(nook_target, texel, before + nook_sums[from][lane]);
+		}
+		before += nook_sums[from][255];
+		barrier();
+	}
+}
+)";
+
 } // namespace
 
 GlContext::GlContext(GlApi api, std::optional<int> device)
@@ -361,24 +417,6 @@ double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 	return seconds;
 }
 
-namespace
-{
-
-std::vector<float> readFloats(const GlTexture& texture, unsigned format, std::size_t channels)
-{
-	const PictureShape& shape = texture.shape();
-	std::vector<float> values(channels * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
-	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
-	glBindFramebuffer(GL_FRAMEBUFFER, frame);
-	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
-	glPixelStorei(GL_PACK_ALIGNMENT, 4);
-	glReadPixels(0, 0, shape.width, shape.height, format, GL_FLOAT, values.data());
-	checkGlErrors();
-	return values;
-}
-
-} // namespace
-
 std::vector<float> readScalar(const GlTexture& texture)
 {
 	return readFloats(texture, GL_RED, 1);
@@ -489,54 +527,6 @@ void warmUp(const GlContext& context, int repetitions, const std::function<void(
 		draw();
 	}
 }
-
-// This work is based on: W. D. Hillis, G. L. Steele, "Data Parallel Algorithms", CACM 1986 (sums by doubling distances).
-
-namespace
-{
-
-// One work group per row or column; processes 256 entries at a time and carries the sum along.
-constexpr const char* kSource = R"(
-layout(local_size_x = 256) in;
-uniform highp usampler2DArray nook_source;
-layout(rgba32ui) writeonly uniform uimage2D nook_target;
-shared uvec4 nook_sums[2][256];
-void main()
-{
-	int line = int(gl_WorkGroupID.x);
-	int lane = int(gl_LocalInvocationID.x);
-	ivec2 size = textureSize(nook_source, 0).xy;
-	int count = AXIS == 0 ? size.x : size.y;
-	uvec4 before = uvec4(0u);
-	for (int first = 0; first < count; first += 256)
-	{
-		int at = first + lane;
-		ivec2 texel = AXIS == 0 ? ivec2(at, line) : ivec2(line, at);
-		nook_sums[0][lane] = at < count ? texelFetch(nook_source, ivec3(texel, 0), 0) : uvec4(0u);
-		int from = 0;
-		barrier();
-		for (int stride = 1; stride < 256; stride *= 2)
-		{
-			uvec4 sum = nook_sums[from][lane];
-			if (lane >= stride)
-			{
-				sum += nook_sums[from][lane - stride];
-			}
-			nook_sums[1 - from][lane] = sum;
-			from = 1 - from;
-			barrier();
-		}
-		if (at < count)
-		{
-			imageStore(nook_target, texel, before + nook_sums[from][lane]);
-		}
-		before += nook_sums[from][255];
-		barrier();
-	}
-}
-)";
-
-} // namespace
 
 GlScan::GlScan(int axis)
 	: m_axis(axis), m_program(linkedProgram(

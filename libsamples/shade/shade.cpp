@@ -174,6 +174,62 @@ void draw(const ShadePass& pass, const shade_kernels::Kernels& kernels, PictureP
 	parallelFor(height, run.threads, row);
 }
 
+constexpr std::array<const char*, 5> kSamplers{"nook_cells", "nook_packed", "nook_levels", "nook_tables",
+											   "nook_range"}; // in the order of ShadeSlot
+
+// Throws Error (unsupported) if compute shaders are requested but not available.
+bool usesCompute(const GlContext& context, const ShadeSettings& settings)
+{
+	const TableBuilder builder = settings.statvo.builder;
+	if (builder == TableBuilder::compute && !context.hasCompute())
+	{
+		throw Error(ExitCode::unsupported, "OpenGL: found no compute shaders in " + context.renderer() + ", expected OpenGL 4.3");
+	}
+	const bool automatic = context.hasCompute() && !context.isSoftware(); // on llvmpipe, compute shaders are five times slower
+	return builder == TableBuilder::compute || (builder == TableBuilder::automatic && automatic);
+}
+
+// A G-buffer and its samples on the GPU. Row 0 is the top row, also in gl_FragCoord, since nothing is displayed.
+struct Inputs
+{
+	GlTexture depths;
+	GlTexture normals;
+	GlTexture samples;
+	GlLeft left;
+
+	Inputs(const GBuffer& gbuffer, const ShadeSamples& of, std::span<const glm::vec4> four)
+		: depths(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data()),
+		  normals(gbuffer.width_px, gbuffer.height_px, 4, &four[0].x),
+		  samples(of.count, static_cast<int>(of.samples.size()) / of.count, 4, &of.samples[0].x),
+		  left(gbuffer.width_px, gbuffer.height_px)
+	{
+	}
+};
+
+// Sets up a pass with its inputs.
+std::unique_ptr<GlPass> programOf(GlSession& session, const ShadePass& pass, const ShadePlan& plan, const Inputs& inputs,
+								  std::span<const std::unique_ptr<GlTexture>> pictures)
+{
+	auto program = std::make_unique<GlPass>(session.program(glSourceOf(pass, plan.pictures[pass.picture].format)));
+	program->bind("nook_depths", inputs.depths);
+	program->bind("nook_normals", inputs.normals);
+	program->bind("nook_samples", inputs.samples);
+	for (const ShadeRead& read : pass.reads)
+	{
+		program->bind(kSamplers[static_cast<std::size_t>(read.slot)], *pictures[read.picture]);
+	}
+	if (pass.leaves)
+	{
+		program->leave(inputs.left);
+	}
+	if (pass.fills)
+	{
+		program->fill(inputs.left);
+	}
+	program->bindBlock("NookBlock", std::as_bytes(std::span(&pass.block, 1)));
+	return program;
+}
+
 } // namespace
 
 std::vector<Planes> picturesFor(const ShadePlan& plan)
@@ -280,67 +336,6 @@ void PassTimes::finish(Shaded& shaded) const
 		shaded.seconds += shaded.passes.back().seconds;
 	}
 }
-
-namespace
-{
-
-constexpr std::array<const char*, 5> kSamplers{"nook_cells", "nook_packed", "nook_levels", "nook_tables",
-											   "nook_range"}; // in the order of ShadeSlot
-
-// Throws Error (unsupported) if compute shaders are requested but not available.
-bool usesCompute(const GlContext& context, const ShadeSettings& settings)
-{
-	const TableBuilder builder = settings.statvo.builder;
-	if (builder == TableBuilder::compute && !context.hasCompute())
-	{
-		throw Error(ExitCode::unsupported, "OpenGL: found no compute shaders in " + context.renderer() + ", expected OpenGL 4.3");
-	}
-	const bool automatic = context.hasCompute() && !context.isSoftware(); // on llvmpipe, compute shaders are five times slower
-	return builder == TableBuilder::compute || (builder == TableBuilder::automatic && automatic);
-}
-
-// A G-buffer and its samples on the GPU. Row 0 is the top row, also in gl_FragCoord, since nothing is displayed.
-struct Inputs
-{
-	GlTexture depths;
-	GlTexture normals;
-	GlTexture samples;
-	GlLeft left;
-
-	Inputs(const GBuffer& gbuffer, const ShadeSamples& of, std::span<const glm::vec4> four)
-		: depths(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data()),
-		  normals(gbuffer.width_px, gbuffer.height_px, 4, &four[0].x),
-		  samples(of.count, static_cast<int>(of.samples.size()) / of.count, 4, &of.samples[0].x),
-		  left(gbuffer.width_px, gbuffer.height_px)
-	{
-	}
-};
-
-// Sets up a pass with its inputs.
-std::unique_ptr<GlPass> programOf(GlSession& session, const ShadePass& pass, const ShadePlan& plan, const Inputs& inputs,
-								  std::span<const std::unique_ptr<GlTexture>> pictures)
-{
-	auto program = std::make_unique<GlPass>(session.program(glSourceOf(pass, plan.pictures[pass.picture].format)));
-	program->bind("nook_depths", inputs.depths);
-	program->bind("nook_normals", inputs.normals);
-	program->bind("nook_samples", inputs.samples);
-	for (const ShadeRead& read : pass.reads)
-	{
-		program->bind(kSamplers[static_cast<std::size_t>(read.slot)], *pictures[read.picture]);
-	}
-	if (pass.leaves)
-	{
-		program->leave(inputs.left);
-	}
-	if (pass.fills)
-	{
-		program->fill(inputs.left);
-	}
-	program->bindBlock("NookBlock", std::as_bytes(std::span(&pass.block, 1)));
-	return program;
-}
-
-} // namespace
 
 Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, const DrawSettings& drawing)
 {

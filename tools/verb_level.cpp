@@ -66,12 +66,11 @@ std::vector<PlacedLevel> placesOf(const ConvertOptions& options)
 		refuse("--move: found " + std::to_string(options.moves.size()) + " for " + std::to_string(options.levels.size()) +
 			   " levels, expected one for each level, in their order");
 	}
-	std::vector<PlacedLevel> places;
-	for (const std::string& name : options.levels)
+	const auto placeOf = [&options](std::size_t i)
 	{
-		places.push_back({name, options.moves.empty() ? glm::dvec3(0.0) : options.moves[places.size()]});
-	}
-	return places;
+		return PlacedLevel{options.levels[i], options.moves.empty() ? glm::dvec3(0.0) : options.moves[i]};
+	};
+	return listOf(options.levels.size(), placeOf);
 }
 
 constexpr unsigned kMostCells = 4096;

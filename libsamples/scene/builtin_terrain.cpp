@@ -324,26 +324,17 @@ struct Station
 std::vector<Station> stationsOf(std::size_t along, std::size_t mouth, std::size_t back)
 {
 	std::vector<Station> stations;
-	const auto share = [](std::size_t i, std::size_t count)
+	const auto addSide = [&stations](std::size_t count, const auto& stationAt)
 	{
-		return static_cast<double>(i) / static_cast<double>(count);
+		for (std::size_t i = 0; i < count; ++i)
+		{
+			stations.push_back(stationAt(static_cast<double>(i) / static_cast<double>(count)));
+		}
 	};
-	for (std::size_t i = 0; i < along; ++i)
-	{
-		stations.push_back({kTunnelHalf * (2.0 * share(i, along) - 1.0), 0.0});
-	}
-	for (std::size_t i = 0; i < mouth; ++i)
-	{
-		stations.push_back({kTunnelHalf, share(i, mouth)});
-	}
-	for (std::size_t i = 0; i < back; ++i)
-	{
-		stations.push_back({kTunnelHalf * (1.0 - 2.0 * share(i, back)), 1.0});
-	}
-	for (std::size_t i = 0; i < mouth; ++i)
-	{
-		stations.push_back({-kTunnelHalf, 1.0 - share(i, mouth)});
-	}
+	addSide(along, [](double share) { return Station{kTunnelHalf * (2.0 * share - 1.0), 0.0}; });
+	addSide(mouth, [](double share) { return Station{kTunnelHalf, share}; });
+	addSide(back, [](double share) { return Station{kTunnelHalf * (1.0 - 2.0 * share), 1.0}; });
+	addSide(mouth, [](double share) { return Station{-kTunnelHalf, 1.0 - share}; });
 	return stations;
 }
 

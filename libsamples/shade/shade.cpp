@@ -310,12 +310,10 @@ void setResult(Shaded& shaded, std::vector<float> values, bool quads)
 	}
 }
 
-PassTimes::PassTimes(const ShadePlan& plan) : m_seconds(plan.passes.size())
+PassTimes::PassTimes(const ShadePlan& plan)
+	: m_names(mapped(plan.passes, [](const ShadePass& pass) { return std::string(pass.kernel.name); })),
+	  m_seconds(plan.passes.size())
 {
-	for (const ShadePass& pass : plan.passes)
-	{
-		m_names.push_back(pass.kernel.name);
-	}
 }
 
 int PassTimes::drawings(const DrawSettings& settings)

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "emit/module.h"
 #include "methods/block.h"
 #include "methods/kernel_text.h"
@@ -398,12 +399,7 @@ namespace
 
 std::vector<glm::vec4> fourOf(const std::vector<glm::vec3>& normals)
 {
-	std::vector<glm::vec4> four;
-	for (const glm::vec3& normal : normals)
-	{
-		four.emplace_back(normal, 0.0F);
-	}
-	return four;
+	return mapped(normals, [](const glm::vec3& normal) { return glm::vec4(normal, 0.0F); });
 }
 
 std::vector<glm::vec4> tileOf(const ModuleMethod& method)

@@ -7,6 +7,7 @@
 #include "temporary_folder.h"
 
 #include "core/file.h"
+#include "core/lists.h"
 #include "emit/module.h"
 #include "methods/block.h"
 #include "methods/method_table.h"
@@ -86,11 +87,7 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 	const ShadeSamples samples = samplesFor(settings);
 	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings.shade, false);
 	const std::vector<float> block = bytesFor(passBlockFor(gbuffer, settings.shade, first_row_ndc_y, frame), settings.float_block);
-	std::vector<glm::vec4> four;
-	for (const glm::vec3& normal : gbuffer.normals)
-	{
-		four.emplace_back(normal, 0.0F);
-	}
+	const std::vector<glm::vec4> four = mapped(gbuffer.normals, [](const glm::vec3& normal) { return glm::vec4(normal, 0.0F); });
 	const GlTexture depths(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data());
 	const GlTexture normals(gbuffer.width_px, gbuffer.height_px, 4, &four[0].x);
 	const std::unique_ptr<GlTexture> tile = tileOf(samples);
@@ -357,11 +354,8 @@ TEST_CASE("module: a compute shader's bindings are where its text puts them", "[
 		glGenBuffers(1, &buffer);
 		glBindBufferBase(GL_UNIFORM_BUFFER, 0, buffer);
 		glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(block.size() * 4), block.data(), GL_STATIC_DRAW);
-		std::vector<glm::vec4> four;
-		for (const glm::vec3& normal : gbuffer.normals)
-		{
-			four.emplace_back(normal, 0.0F);
-		}
+		const std::vector<glm::vec4> four =
+			mapped(gbuffer.normals, [](const glm::vec3& normal) { return glm::vec4(normal, 0.0F); });
 		const GlTexture depths(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data());
 		const GlTexture normals(gbuffer.width_px, gbuffer.height_px, 4, &four[0].x);
 		const GlTexture picture(PictureShape{PictureFormat::scalar, gbuffer.width_px, gbuffer.height_px});

@@ -8,6 +8,7 @@
 #include "vulkan_device.h"
 
 #include "core/file.h"
+#include "core/lists.h"
 #include "methods/recipes.h"
 #include "shade/shade.h"
 
@@ -43,87 +44,38 @@ struct VulkanPass
 class VulkanShader
 {
 public:
-	VulkanShader(const VulkanDevice& vulkan, const ModuleSettings& settings, const std::string& spirv) : m_vulkan(vulkan)
+	VulkanShader(const VulkanDevice& vulkan, const ModuleSettings& settings, const std::string& spirv)
+		: m_vulkan(vulkan), m_hlsl(settings.target == GlslTarget::hlsl60),
+		  m_bindings(vulkan, typesFor(settings), VK_SHADER_STAGE_COMPUTE_BIT, sizeof VulkanPass::numbers)
 	{
-		m_hlsl = settings.target == GlslTarget::hlsl60;
-		const bool separate = settings.textures == ModuleTextures::separate;
-		m_texture = m_hlsl || separate ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-		m_last = m_hlsl ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_SAMPLER;
-		std::vector<VkDescriptorSetLayoutBinding> bindings;
-		for (uint32_t i = 0; i <= kLastBinding; ++i)
-		{
-			const VkDescriptorType type = i == 0              ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-										  : i == kOutBinding  ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
-										  : i == kLastBinding ? m_last
-															  : m_texture;
-			bindings.push_back({i, type, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
-		}
-		auto set_info = vulkanInfo<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
-		set_info.bindingCount = static_cast<uint32_t>(bindings.size());
-		set_info.pBindings = bindings.data();
-		requireVulkan(vkCreateDescriptorSetLayout(vulkan.device(), &set_info, nullptr, &m_set_layout));
-		const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, 16};
-		auto layout_info = vulkanInfo<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
-		layout_info.setLayoutCount = 1;
-		layout_info.pSetLayouts = &m_set_layout;
-		layout_info.pushConstantRangeCount = 1;
-		layout_info.pPushConstantRanges = &push;
-		requireVulkan(vkCreatePipelineLayout(vulkan.device(), &layout_info, nullptr, &m_layout));
-		std::vector<uint32_t> words(spirv.size() / 4);
-		std::memcpy(words.data(), spirv.data(), spirv.size());
-		auto module_info = vulkanInfo<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-		module_info.codeSize = spirv.size();
-		module_info.pCode = words.data();
 		auto info = vulkanInfo<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
-		info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-		info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-		info.stage.pName = "main";
-		requireVulkan(vkCreateShaderModule(vulkan.device(), &module_info, nullptr, &info.stage.module));
-		info.layout = m_layout;
+		info.stage = vulkanStageOf(vulkan, VK_SHADER_STAGE_COMPUTE_BIT, spirv);
+		info.layout = m_bindings.layout();
 		requireVulkan(vkCreateComputePipelines(vulkan.device(), VK_NULL_HANDLE, 1, &info, nullptr, &m_pipeline));
-		auto sampler_info = vulkanInfo<VkSamplerCreateInfo>(VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO);
-		sampler_info.maxLod = VK_LOD_CLAMP_NONE;
-		requireVulkan(vkCreateSampler(vulkan.device(), &sampler_info, nullptr, &m_sampler));
-		const std::array<VkDescriptorPoolSize, 4> sizes{
-			VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2}, VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1},
-			VkDescriptorPoolSize{m_texture, 16}, VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_SAMPLER, 1}};
-		auto pool_info = vulkanInfo<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
-		pool_info.maxSets = 1;
-		pool_info.poolSizeCount = 4;
-		pool_info.pPoolSizes = sizes.data();
-		VkDescriptorPool pool{};
-		requireVulkan(vkCreateDescriptorPool(vulkan.device(), &pool_info, nullptr, &pool));
-		auto set = vulkanInfo<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-		set.descriptorPool = pool;
-		set.descriptorSetCount = 1;
-		set.pSetLayouts = &m_set_layout;
-		requireVulkan(vkAllocateDescriptorSets(vulkan.device(), &set, &m_set));
 	}
 
 	// Dispatches it `times` times, one after the other, which keeps the GPU's clock up. Returns the time of one in milliseconds.
 	double dispatch(const VulkanPass& pass, const VulkanBuffer& block, int times) const
 	{
-		writeBuffer(0, block.buffer);
+		m_bindings.bind(0, block);
 		for (const auto& [binding, view] : pass.textures)
 		{
-			write(binding, m_texture, view);
+			m_bindings.bind(binding, view);
 		}
-		write(kOutBinding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, pass.picture);
+		m_bindings.bind(kOutBinding, pass.picture);
 		if (m_hlsl)
 		{
-			const VulkanBuffer numbers(m_vulkan, sizeof pass.numbers, &pass.numbers);
-			writeBuffer(kLastBinding, numbers.buffer);
+			m_bindings.bind(kLastBinding, VulkanBuffer(m_vulkan, sizeof pass.numbers, &pass.numbers));
 		}
 		else
 		{
-			write(kLastBinding, m_last, {});
+			m_bindings.bind(kLastBinding, VkImageView{});
 		}
 		const double milliseconds = m_vulkan.run(
 			[&](VkCommandBuffer commands)
 			{
-				vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, m_pipeline);
-				vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, m_layout, 0, 1, &m_set, 0, nullptr);
-				vkCmdPushConstants(commands, m_layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, 16, &pass.numbers);
+				m_bindings.use(commands, VK_PIPELINE_BIND_POINT_COMPUTE, m_pipeline);
+				vkCmdPushConstants(commands, m_bindings.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, 16, &pass.numbers);
 				for (int i = 0; i < times; ++i)
 				{
 					vkCmdDispatch(commands, (pass.width + 7) / 8, (pass.height + 7) / 8, 1);
@@ -138,33 +90,22 @@ public:
 	}
 
 private:
-	void write(uint32_t binding, VkDescriptorType type, VkImageView view, const VkDescriptorBufferInfo* buffer = nullptr) const
+	static std::vector<VkDescriptorType> typesFor(const ModuleSettings& settings)
 	{
-		const VkDescriptorImageInfo image{m_sampler, view, VK_IMAGE_LAYOUT_GENERAL};
-		auto info = vulkanInfo<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
-		info.dstSet = m_set;
-		info.dstBinding = binding;
-		info.descriptorCount = 1;
-		info.descriptorType = type;
-		info.pImageInfo = &image;
-		info.pBufferInfo = buffer;
-		vkUpdateDescriptorSets(m_vulkan.device(), 1, &info, 0, nullptr);
-	}
-	void writeBuffer(uint32_t binding, VkBuffer buffer) const
-	{
-		const VkDescriptorBufferInfo whole{buffer, 0, VK_WHOLE_SIZE};
-		write(binding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, {}, &whole);
+		const bool hlsl = settings.target == GlslTarget::hlsl60;
+		const bool separate = hlsl || settings.textures == ModuleTextures::separate;
+		std::vector<VkDescriptorType> types(kLastBinding + 1, separate ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE
+																	   : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
+		types[0] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+		types[kOutBinding] = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+		types[kLastBinding] = hlsl ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_SAMPLER;
+		return types;
 	}
 
 	const VulkanDevice& m_vulkan;
 	bool m_hlsl = false;
-	VkDescriptorType m_texture{};
-	VkDescriptorType m_last{};
-	VkDescriptorSetLayout m_set_layout{};
-	VkPipelineLayout m_layout{};
+	VulkanBindings m_bindings;
 	VkPipeline m_pipeline{};
-	VkSampler m_sampler{};
-	VkDescriptorSet m_set{};
 };
 
 // SPIR-V of one pass of a whole compute shader.
@@ -202,11 +143,7 @@ ComputedPicture computed(const GBuffer& gbuffer, const ModuleSettings& settings,
 	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings.shade, false);
 	const std::vector<float> numbers = bytesFor(passBlockFor(gbuffer, settings.shade, 1, 0), settings.float_block);
 	const VulkanBuffer block(vulkan, numbers.size() * 4, numbers.data());
-	std::vector<glm::vec4> normals;
-	for (const glm::vec3& normal : gbuffer.normals)
-	{
-		normals.emplace_back(normal, 0.0F);
-	}
+	const std::vector<glm::vec4> normals = mapped(gbuffer.normals, [](const glm::vec3& normal) { return glm::vec4(normal, 0.0F); });
 	const VulkanPicture depths(vulkan, {PictureFormat::scalar, gbuffer.width_px, gbuffer.height_px}, finiteDepths(gbuffer).data());
 	const VulkanPicture normal_picture(vulkan, {PictureFormat::quad, gbuffer.width_px, gbuffer.height_px}, normals.data());
 	const std::vector<glm::vec4> texels = tileTexels(samples);

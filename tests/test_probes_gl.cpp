@@ -75,11 +75,11 @@ std::vector<float> drawnBy(GlApi api, const ProbeGrid& grid, const Asked& asked)
 	const std::string head = api == GlApi::es ? "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp "
 												"sampler2D;\nprecision highp sampler3D;\n"
 											  : "#version 330 core\n";
-	const unsigned program = fragmentProgram(head + probesGlsl(grid, "nook test") +
-											 "uniform sampler3D probes;\nuniform sampler2D positions;\nuniform sampler2D normals;\n"
-											 "out vec4 shown;\nvoid main()\n{\n\tivec2 pixel = ivec2(gl_FragCoord.xy);\n"
-											 "\tshown = vec4(nookProbeVisibility(probes, texelFetch(positions, pixel, 0).xyz, "
-											 "texelFetch(normals, pixel, 0).xyz));\n}\n");
+	const GlName program = fragmentProgram(head + probesGlsl(grid, "nook test") +
+										   "uniform sampler3D probes;\nuniform sampler2D positions;\nuniform sampler2D normals;\n"
+										   "out vec4 shown;\nvoid main()\n{\n\tivec2 pixel = ivec2(gl_FragCoord.xy);\n"
+										   "\tshown = vec4(nookProbeVisibility(probes, texelFetch(positions, pixel, 0).xyz, "
+										   "texelFetch(normals, pixel, 0).xyz));\n}\n");
 	glUseProgram(program);
 	glUniform1i(glGetUniformLocation(program, "probes"), static_cast<int>(kUnit));
 	std::vector<float> values;
@@ -91,7 +91,6 @@ std::vector<float> drawnBy(GlApi api, const ProbeGrid& grid, const Asked& asked)
 		pass.draw(target);
 		values = readScalar(target);
 	}
-	glDeleteProgram(program);
 	glDeleteTextures(1, &probes);
 	return values;
 }

@@ -6,6 +6,7 @@
 #include "temporary_folder.h"
 #include "vulkan_device.h"
 
+#include "core/lists.h"
 #include "emit/module.h"
 #include "shade/aov_gl_parts.h"
 
@@ -34,67 +35,18 @@ std::string spirvOfStage(const std::string& text, const char* kind, const std::s
 	return readFile(folder / "m.spv");
 }
 
-VkPipelineShaderStageCreateInfo vulkanStageOf(const VulkanDevice& vulkan, VkShaderStageFlagBits kind, const std::string& spirv)
-{
-	std::vector<uint32_t> words(spirv.size() / 4);
-	std::memcpy(words.data(), spirv.data(), spirv.size());
-	auto module_info = vulkanInfo<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-	module_info.codeSize = spirv.size();
-	module_info.pCode = words.data();
-	auto stage = vulkanInfo<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
-	stage.stage = kind;
-	stage.pName = "main";
-	requireVulkan(vkCreateShaderModule(vulkan.device(), &module_info, nullptr, &stage.module));
-	return stage;
-}
-
 // One layout for all stages: docs/reference/modules.md, bindings.
 class VolumeLayout
 {
 public:
-	VolumeLayout(const VulkanDevice& vulkan, bool hlsl) : m_vulkan(vulkan)
+	VolumeLayout(const VulkanDevice& vulkan, bool hlsl)
+		: m_vulkan(vulkan), m_bindings(vulkan, typesFor(hlsl), VK_SHADER_STAGE_ALL_GRAPHICS)
 	{
-		m_texture = hlsl ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-		std::vector<VkDescriptorSetLayoutBinding> bindings;
-		for (uint32_t i = 0; i < 15; ++i)
-		{
-			bindings.push_back({i, typeOf(i), 1, VK_SHADER_STAGE_ALL_GRAPHICS, nullptr});
-		}
-		auto set_info = vulkanInfo<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
-		set_info.bindingCount = static_cast<uint32_t>(bindings.size());
-		set_info.pBindings = bindings.data();
-		requireVulkan(vkCreateDescriptorSetLayout(vulkan.device(), &set_info, nullptr, &m_set_layout));
-		auto layout_info = vulkanInfo<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
-		layout_info.setLayoutCount = 1;
-		layout_info.pSetLayouts = &m_set_layout;
-		requireVulkan(vkCreatePipelineLayout(vulkan.device(), &layout_info, nullptr, &m_layout));
-		auto sampler_info = vulkanInfo<VkSamplerCreateInfo>(VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO);
-		requireVulkan(vkCreateSampler(vulkan.device(), &sampler_info, nullptr, &m_sampler));
-		const std::array<VkDescriptorPoolSize, 3> sizes{VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
-														VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3},
-														VkDescriptorPoolSize{m_texture, 11}};
-		auto pool_info = vulkanInfo<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
-		pool_info.maxSets = 1;
-		pool_info.poolSizeCount = 3;
-		pool_info.pPoolSizes = sizes.data();
-		VkDescriptorPool pool{};
-		requireVulkan(vkCreateDescriptorPool(vulkan.device(), &pool_info, nullptr, &pool));
-		auto set = vulkanInfo<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-		set.descriptorPool = pool;
-		set.descriptorSetCount = 1;
-		set.pSetLayouts = &m_set_layout;
-		requireVulkan(vkAllocateDescriptorSets(vulkan.device(), &set, &m_set));
 	}
 
-	void bind(uint32_t binding, const VulkanPicture& picture) const
+	template <class Bound> void bind(uint32_t binding, const Bound& bound) const
 	{
-		const VkDescriptorImageInfo image{m_sampler, picture.view, VK_IMAGE_LAYOUT_GENERAL};
-		write(binding, &image, nullptr);
-	}
-	void bind(uint32_t binding, const VulkanBuffer& buffer) const
-	{
-		const VkDescriptorBufferInfo whole{buffer.buffer, 0, VK_WHOLE_SIZE};
-		write(binding, nullptr, &whole);
+		m_bindings.bind(binding, bound);
 	}
 
 	// Draws into a picture that is cleared to 0. draw(commands) makes the draw calls. The vertices' buffer holds the numbers of the
@@ -157,7 +109,7 @@ public:
 		info.pMultisampleState = &samples;
 		info.pColorBlendState = &blend;
 		info.pDynamicState = &dynamic;
-		info.layout = m_layout;
+		info.layout = m_bindings.layout();
 		VkPipeline pipeline{};
 		requireVulkan(vkCreateGraphicsPipelines(m_vulkan.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
 
@@ -176,8 +128,7 @@ public:
 			{
 				const VkDeviceSize start = 0;
 				vkCmdBeginRendering(commands, &rendering);
-				vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
-				vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, m_layout, 0, 1, &m_set, 0, nullptr);
+				m_bindings.use(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
 				vkCmdBindVertexBuffers(commands, 0, 1, &numbers.buffer, &start);
 				vkCmdSetCullMode(commands, VK_CULL_MODE_NONE);
 				draw(commands);
@@ -186,30 +137,17 @@ public:
 	}
 
 private:
-	VkDescriptorType typeOf(uint32_t binding) const
+	static std::vector<VkDescriptorType> typesFor(bool hlsl)
 	{
-		return binding == 0                 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-			   : binding > 2 && binding < 6 ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
-											: m_texture;
-	}
-	void write(uint32_t binding, const VkDescriptorImageInfo* image, const VkDescriptorBufferInfo* buffer) const
-	{
-		auto info = vulkanInfo<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
-		info.dstSet = m_set;
-		info.dstBinding = binding;
-		info.descriptorCount = 1;
-		info.descriptorType = typeOf(binding);
-		info.pImageInfo = image;
-		info.pBufferInfo = buffer;
-		vkUpdateDescriptorSets(m_vulkan.device(), 1, &info, 0, nullptr);
+		std::vector<VkDescriptorType> types(15,
+											hlsl ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
+		types[0] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+		std::fill_n(types.begin() + 3, 3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
+		return types;
 	}
 
 	const VulkanDevice& m_vulkan;
-	VkDescriptorType m_texture{};
-	VkDescriptorSetLayout m_set_layout{};
-	VkPipelineLayout m_layout{};
-	VkSampler m_sampler{};
-	VkDescriptorSet m_set{};
+	VulkanBindings m_bindings;
 };
 
 template <class Item> VulkanBuffer vulkanBufferOf(const VulkanDevice& vulkan, const std::vector<Item>& items)
@@ -245,11 +183,7 @@ std::vector<float> drawnVolumes(const GBuffer& gbuffer, const VolumeSet& set, Gl
 		seen.push_back(frame.seen(cluster));
 		numbers.push_back(static_cast<int>(numbers.size()));
 	}
-	std::vector<glm::vec4> normals;
-	for (const glm::vec3& normal : gbuffer.normals)
-	{
-		normals.emplace_back(normal, 0.0F);
-	}
+	const std::vector<glm::vec4> normals = mapped(gbuffer.normals, [](const glm::vec3& normal) { return glm::vec4(normal, 0.0F); });
 	const auto shapeOf = [&gbuffer](PictureFormat format)
 	{
 		return PictureShape{format, gbuffer.width_px, gbuffer.height_px};
@@ -266,17 +200,17 @@ std::vector<float> drawnVolumes(const GBuffer& gbuffer, const VolumeSet& set, Gl
 	const VulkanPicture visibility(vulkan, shapeOf(PictureFormat::scalar));
 	const VolumeLayout layout(vulkan, hlsl);
 	layout.bind(0, block);
-	layout.bind(1, depths);
-	layout.bind(2, normal_picture);
+	layout.bind(1, depths.view);
+	layout.bind(2, normal_picture.view);
 	layout.bind(3, corners);
 	layout.bind(4, polygons);
 	layout.bind(5, clusters);
 	for (const uint32_t unread : {6U, 7U, 8U, 9U, 11U, 12U, 14U})
 	{
-		layout.bind(unread, depths);
+		layout.bind(unread, depths.view);
 	}
-	layout.bind(10, half_spaces);
-	layout.bind(13, sums);
+	layout.bind(10, half_spaces.view);
+	layout.bind(13, sums.view);
 	const auto one = [](VkCommandBuffer commands)
 	{
 		vkCmdDraw(commands, 3, 1, 0, 0);

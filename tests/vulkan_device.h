@@ -263,6 +263,105 @@ struct VulkanPicture
 	}
 };
 
+inline VkPipelineShaderStageCreateInfo vulkanStageOf(const VulkanDevice& vulkan, VkShaderStageFlagBits kind,
+													 const std::string& spirv)
+{
+	std::vector<uint32_t> words(spirv.size() / 4);
+	std::memcpy(words.data(), spirv.data(), spirv.size());
+	auto module_info = vulkanInfo<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+	module_info.codeSize = spirv.size();
+	module_info.pCode = words.data();
+	auto stage = vulkanInfo<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
+	stage.stage = kind;
+	stage.pName = "main";
+	requireVulkan(vkCreateShaderModule(vulkan.device(), &module_info, nullptr, &stage.module));
+	return stage;
+}
+
+// A descriptor per binding, 0 and up, one sampler for all, and constants that are pushed.
+class VulkanBindings
+{
+public:
+	VulkanBindings(const VulkanDevice& vulkan, std::vector<VkDescriptorType> types, VkShaderStageFlags stages, uint32_t pushed = 0)
+		: m_device(vulkan.device()), m_types(std::move(types))
+	{
+		std::vector<VkDescriptorSetLayoutBinding> bindings;
+		std::vector<VkDescriptorPoolSize> sizes;
+		for (const VkDescriptorType type : m_types)
+		{
+			bindings.push_back({static_cast<uint32_t>(bindings.size()), type, 1, stages, nullptr});
+			sizes.push_back({type, 1});
+		}
+		auto set_info = vulkanInfo<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+		set_info.bindingCount = static_cast<uint32_t>(bindings.size());
+		set_info.pBindings = bindings.data();
+		VkDescriptorSetLayout set_layout{};
+		requireVulkan(vkCreateDescriptorSetLayout(m_device, &set_info, nullptr, &set_layout));
+		const VkPushConstantRange push{stages, 0, pushed};
+		auto layout_info = vulkanInfo<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+		layout_info.setLayoutCount = 1;
+		layout_info.pSetLayouts = &set_layout;
+		layout_info.pushConstantRangeCount = pushed > 0 ? 1 : 0;
+		layout_info.pPushConstantRanges = &push;
+		requireVulkan(vkCreatePipelineLayout(m_device, &layout_info, nullptr, &m_layout));
+		auto sampler_info = vulkanInfo<VkSamplerCreateInfo>(VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO);
+		sampler_info.maxLod = VK_LOD_CLAMP_NONE;
+		requireVulkan(vkCreateSampler(m_device, &sampler_info, nullptr, &m_sampler));
+		auto pool_info = vulkanInfo<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
+		pool_info.maxSets = 1;
+		pool_info.poolSizeCount = static_cast<uint32_t>(sizes.size());
+		pool_info.pPoolSizes = sizes.data();
+		VkDescriptorPool pool{};
+		requireVulkan(vkCreateDescriptorPool(m_device, &pool_info, nullptr, &pool));
+		auto set = vulkanInfo<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
+		set.descriptorPool = pool;
+		set.descriptorSetCount = 1;
+		set.pSetLayouts = &set_layout;
+		requireVulkan(vkAllocateDescriptorSets(m_device, &set, &m_set));
+	}
+
+	VkPipelineLayout layout() const
+	{
+		return m_layout;
+	}
+
+	void bind(uint32_t binding, VkImageView view) const
+	{
+		const VkDescriptorImageInfo image{m_sampler, view, VK_IMAGE_LAYOUT_GENERAL};
+		write(binding, &image, nullptr);
+	}
+	void bind(uint32_t binding, const VulkanBuffer& buffer) const
+	{
+		const VkDescriptorBufferInfo whole{buffer.buffer, 0, VK_WHOLE_SIZE};
+		write(binding, nullptr, &whole);
+	}
+
+	void use(VkCommandBuffer commands, VkPipelineBindPoint point, VkPipeline pipeline) const
+	{
+		vkCmdBindPipeline(commands, point, pipeline);
+		vkCmdBindDescriptorSets(commands, point, m_layout, 0, 1, &m_set, 0, nullptr);
+	}
+
+private:
+	void write(uint32_t binding, const VkDescriptorImageInfo* image, const VkDescriptorBufferInfo* buffer) const
+	{
+		auto info = vulkanInfo<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
+		info.dstSet = m_set;
+		info.dstBinding = binding;
+		info.descriptorCount = 1;
+		info.descriptorType = m_types[binding];
+		info.pImageInfo = image;
+		info.pBufferInfo = buffer;
+		vkUpdateDescriptorSets(m_device, 1, &info, 0, nullptr);
+	}
+
+	VkDevice m_device{};
+	std::vector<VkDescriptorType> m_types;
+	VkPipelineLayout m_layout{};
+	VkSampler m_sampler{};
+	VkDescriptorSet m_set{};
+};
+
 inline const VulkanDevice& anyDevice()
 {
 	static const VulkanDevice vulkan;

@@ -8,6 +8,7 @@
 
 #include "core/decimal.h"
 #include "core/image.h"
+#include "core/lists.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "nook/nook.h"
@@ -479,10 +480,7 @@ void runCalled(Verb (*add)(CLI::App& app), Prepared& prepared, const GivenOption
 	{
 		orderAsGiven(*prepared.level, data->arrays);
 	}
-	for (const std::string& warning : prepared.call.warnings)
-	{
-		data->warnings += (data->warnings.empty() ? "" : "\n") + warning;
-	}
+	data->warnings = joinedText(prepared.call.warnings, "\n");
 	handles().add(result, data);
 	if (difference)
 	{

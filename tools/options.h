@@ -64,8 +64,7 @@ Verb addReferenceVerb(CLI::App& nook);
 Verb addReportVerb(CLI::App& nook);
 Verb addShadeVerb(CLI::App& nook);
 
-// `nook report error` and `nook report times`, of the component reports; and these verbs, or ones that end with 5 where the
-// component is not in this build.
+// `nook report error` and `times`, and both or ones that end with 5 where the component reports is not in this build.
 Verb addReportError(CLI::App& report);
 Verb addReportTimes(CLI::App& report);
 std::vector<Verb> addMeasuredReports(CLI::App& report);
@@ -272,15 +271,13 @@ void writeOutputs(const Outputs& outputs, const std::function<std::string(const 
 // The verb that was parsed below `app`: of "report", say, "error".
 const CLI::App& parsedVerb(const CLI::App& app);
 
-// The verb's words and its arguments in one order, whatever theirs was, without outputs, threads, progress, cache and share: what
-// makes a command the same.
+// The verb's words and arguments in one order, without outputs, threads, progress, cache and share: what identifies a command.
 std::vector<std::string> commandWords(const CLI::App& verb);
 
 // The identity of results in a store (core/work_units.h): the version, then the command.
 std::vector<std::string> identityOf(std::vector<std::string> command);
 
-// Runs a verb whose options have been parsed, as a whole or as a share of it. With --cache, the run's results are kept there.
-// Throws what the verb throws.
+// Runs a parsed verb, as a whole or as a share, and keeps results with --cache. Throws what the verb throws.
 void runVerb(const Verb& verb, VerbProgress& progress);
 
 // A line on standard error.

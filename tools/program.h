@@ -7,8 +7,7 @@ namespace nook
 
 int runProgram(int argc, char** argv);
 
-// The commit that was built, or "unknown" without a repository. Only --version prints it, since outputs must not change with
-// commits.
+// The commit that was built, or "unknown"; only --version prints it, since outputs must not change with commits.
 extern const char* const kCommit;
 
 } // namespace nook

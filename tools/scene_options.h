@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options that several verbs share: which level and how its file is read, cameras and pictures of it, G-buffers, and features of
-// methods.
+// Options that several verbs share: levels and how they are read, cameras, pictures, G-buffers, and features of methods.
 #pragma once
 
 #include "options.h"
@@ -71,15 +70,13 @@ inline constexpr std::array<std::string_view, 7> kChannelOptions{
 	"--depth", "--clip", "--sky-depth", "--depth-channel", "--normal-channels", "--normal-space", "--normal-range"};
 void addGBufferChannels(CLI::App& app, GBufferImport& import);
 
-// kChannelOptions, --normals, --viewport, --projection, --world-to-camera. Options that are not given come from the file. Pass
-// `import` to readGBuffer().
+// kChannelOptions, --normals, --viewport, --projection, --world-to-camera, for readGBuffer(); the file's values by default.
 void addGBufferImport(CLI::App& app, GBufferImport& import);
 
 // Before any work: refuses options that contradict each other. Throws Error (usage).
 void checkGBufferImport(const GBufferImport& import);
 
-// The table of features (feature_table.h) and --recipe as options of nook shade and nook emit; and options that name the methods
-// which draw volumes.
+// Features (feature_table.h) and --recipe as options of nook shade and nook emit; options that name the volumes' methods.
 
 inline constexpr std::array<std::string_view, 2> kModuleDepths{"linear", "device"}; // that a module reads
 

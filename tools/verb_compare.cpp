@@ -13,7 +13,6 @@
 #include "scene/gbuffer.h"
 
 #include <array>
-#include <filesystem>
 #include <optional>
 
 namespace nook

@@ -66,12 +66,11 @@ std::vector<PlacedLevel> placesOf(const ConvertOptions& options)
 		refuse("--move: found " + std::to_string(options.moves.size()) + " for " + std::to_string(options.levels.size()) +
 			   " levels, expected one for each level, in their order");
 	}
-	std::vector<PlacedLevel> places;
-	for (const std::string& name : options.levels)
+	const auto placeOf = [&options](std::size_t i)
 	{
-		places.push_back({name, options.moves.empty() ? glm::dvec3(0.0) : options.moves[places.size()]});
-	}
-	return places;
+		return PlacedLevel{options.levels[i], options.moves.empty() ? glm::dvec3(0.0) : options.moves[i]};
+	};
+	return listOf(options.levels.size(), placeOf);
 }
 
 constexpr unsigned kMostCells = 4096;
@@ -95,11 +94,6 @@ glm::uvec3 gridOfText(const std::string& name, const std::string& text)
 std::string cornerText(glm::dvec3 p)
 {
 	return numberText(p.x) + "," + numberText(p.y) + "," + numberText(p.z);
-}
-
-std::size_t aroundOf(const Level& level)
-{
-	return sumOver(level.meshes, [](const Mesh& mesh) { return mesh.around ? mesh.triangle_count : 0; });
 }
 
 // The files that `-o` stands for: itself, or NAME-X-Z.glb for each cell of a grid, NAME-X-Y-Z.glb where it is higher than one.
@@ -145,7 +139,7 @@ void cutCells(const Level& level, const CellOptions& options, Facts& facts, cons
 		{
 			continue;
 		}
-		const std::size_t around = aroundOf(cell);
+		const std::size_t around = sumOver(cell.meshes, [](const Mesh& mesh) { return mesh.around ? mesh.triangle_count : 0; });
 		Facts& item = items.emplace_back();
 		if (options.grid)
 		{

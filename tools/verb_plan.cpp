@@ -2,6 +2,7 @@
 // nook plan: a command, or a list of levels and steps → the files from which Make, Slurm or Snakemake runs it in shares; and how
 // much of such a plan is done.
 #include "options.h"
+#include "scene_options.h"
 
 #include "core/decimal.h"
 #include "core/error.h"
@@ -221,10 +222,7 @@ WorkFacts factsOf(const ParsedCommand& parsed, const std::string& folder, const 
 {
 	WorkFacts facts;
 	facts.verb = parsed.name;
-	for (const std::string& level : parsed.values("LEVEL"))
-	{
-		facts.triangles += trianglesOf(folder, level);
-	}
+	facts.triangles = sumOver(parsed.values("LEVEL"), [&folder](const std::string& level) { return trianglesOf(folder, level); });
 	for (const char* option : {"--gbuffer", "FILE.exr", "FILE"})
 	{
 		for (const std::string& name : parsed.values(option))

@@ -49,11 +49,6 @@ std::string spoken(double seconds)
 	return minutes > 0 ? std::to_string(minutes) + " min " + rest : rest;
 }
 
-std::string percentOf(double share)
-{
-	return std::to_string(static_cast<int>(std::floor(100.0 * share))) + " %";
-}
-
 std::string barOf(double share)
 {
 	constexpr std::size_t kCells = 20;
@@ -72,7 +67,8 @@ std::string textOf(std::span<const ProgressStage> stages, double now_s)
 		text += (text.empty() ? "" : ": ") + oneLine(stage.name);
 		if (stage.share > 0.0)
 		{
-			text += (has_bar ? " " : " " + barOf(stage.share) + " ") + percentOf(stage.share);
+			const int percent = static_cast<int>(std::floor(100.0 * stage.share));
+			text += (has_bar ? " " : " " + barOf(stage.share) + " ") + std::to_string(percent) + " %";
 			has_bar = true;
 		}
 		const std::optional<double> left_s = stage.remainingAt(now_s);
@@ -86,12 +82,6 @@ std::string textOf(std::span<const ProgressStage> stages, double now_s)
 }
 
 constexpr std::string_view kFirst = "{\"schema\": \"nook.progress/1\"";
-
-// Rounded down: 1 is the end.
-std::string doneOf(double share)
-{
-	return roundedText(std::floor(1e4 * share) / 1e4, 4);
-}
 
 std::string secondsOf(double seconds)
 {
@@ -196,7 +186,8 @@ void ProgressLog::tell(ProgressStage& stage, const std::string* within, double n
 	stage.logged_s = now_s;
 	std::string line = "{\"stage\": " + jsonText(stage.name);
 	line += within != nullptr ? ", \"within\": " + jsonText(*within) : "";
-	line += ", \"done\": " + doneOf(stage.share) + ", \"elapsed_s\": " + secondsOf(now_s);
+	const std::string done = roundedText(std::floor(1e4 * stage.share) / 1e4, 4); // rounded down: 1 is the end
+	line += ", \"done\": " + done + ", \"elapsed_s\": " + secondsOf(now_s);
 	if (const std::optional<double> left_s = stage.remainingAt(now_s))
 	{
 		line += ", \"remaining_s\": " + secondsOf(*left_s);

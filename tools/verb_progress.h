@@ -44,8 +44,7 @@ struct ProgressStage
 class ProgressLine
 {
 public:
-	// Stages, each a part of the one before, with a bar and the time left. Ten times a second at most, but for the beginning of a
-	// first stage.
+	// Nested stages, with a bar and the time left; ten times a second at most, except when a first stage begins.
 	void show(std::span<const ProgressStage> stages, double now_s);
 
 	void clear();
@@ -59,8 +58,7 @@ private:
 class ProgressLog
 {
 public:
-	// "-" is standard output. What is in a file goes, but none that holds anything but such a log is touched. Throws Error (usage,
-	// file).
+	// "-" is standard output. Replaces a file only if it is such a log. Throws Error (usage, file).
 	ProgressLog(const std::string& path, std::string_view verb);
 	ProgressLog(const ProgressLog&) = delete;
 	ProgressLog& operator=(const ProgressLog&) = delete;
@@ -68,8 +66,7 @@ public:
 
 	bool isOnTerminal() const;
 
-	// Ten lines a second at most, but for a stage's first and last one. `within`: the name of the stage that it is a part of, or
-	// null.
+	// Ten lines a second at most, except a stage's first and last one. `within`: the name of the stage around it, or null.
 	void tell(ProgressStage& stage, const std::string* within, double now_s);
 
 	// The last line. `error`: one line, or empty.

@@ -17,8 +17,7 @@
 namespace nook
 {
 
-// Types that are copied as they lie in memory: numbers, enumerations, GLM's vectors and matrices, arrays of these. None has
-// padding.
+// Types copied as they lie in memory, none with padding: numbers, enumerations, GLM's vectors and matrices, arrays of these.
 template <class T, class = void> struct IsPlain : std::bool_constant<std::is_arithmetic_v<T> || std::is_enum_v<T>>
 {
 };

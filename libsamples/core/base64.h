@@ -33,17 +33,6 @@ inline std::string base64Of(std::span<const uint8_t> bytes)
 	return text;
 }
 
-// Value of a base64 digit; 64 or more for any other character.
-inline uint32_t digitOfBase64(char c)
-{
-	return c >= 'A' && c <= 'Z'   ? static_cast<uint32_t>(c - 'A')
-		   : c >= 'a' && c <= 'z' ? static_cast<uint32_t>(c - 'a' + 26)
-		   : c >= '0' && c <= '9' ? static_cast<uint32_t>(c - '0' + 52)
-		   : c == '+'             ? 62U
-		   : c == '/'             ? 63U
-								  : 64U;
-}
-
 // Returns nothing unless `text` is valid padded base64.
 inline std::optional<std::vector<uint8_t>> bytesOfBase64(std::string_view text)
 {
@@ -60,12 +49,12 @@ inline std::optional<std::vector<uint8_t>> bytesOfBase64(std::string_view text)
 		uint32_t group = 0;
 		for (std::size_t k = 0; k < 4; ++k)
 		{
-			const uint32_t digit = k >= 4 - padding ? 0 : digitOfBase64(text[i + k]);
-			if (digit >= kBase64.size())
+			const std::size_t digit = k >= 4 - padding ? 0 : kBase64.find(text[i + k]);
+			if (digit == std::string_view::npos)
 			{
 				return std::nullopt;
 			}
-			group = group << 6U | digit;
+			group = group << 6U | static_cast<uint32_t>(digit);
 		}
 		for (std::size_t k = 0; k < 3 - padding; ++k)
 		{

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers ↔ decimal text with the results of std::to_chars and std::from_chars, which some standard libraries lack for floating
-// point.
+// Numbers ↔ decimal text like std::to_chars and std::from_chars, which some standard libraries lack for floating point.
 #pragma once
 
 #include <charconv>

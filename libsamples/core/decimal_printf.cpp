@@ -5,12 +5,12 @@
 #include "core/lists.h"
 
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <regex>
 
 namespace nook
 {
@@ -101,55 +101,12 @@ template <class Float> std::string shortest(Float value)
 	return plain.size() <= form.size() ? plain : form;
 }
 
-constexpr const char* kWordLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
-
 // Returns the end of what std::from_chars accepts as a number: no leading blank or plus, no hexadecimal.
-const char* endOfNumber(const char* at, const char* last)
+const char* endOfNumber(const char* first, const char* last)
 {
-	at += at != last && *at == '-' ? 1 : 0;
-	const std::string word(at, last);
-	for (const char* const name : {"infinity", "inf", "nan"})
-	{
-		std::size_t same = 0;
-		while (name[same] != '\0' && same < word.size() && std::tolower(static_cast<unsigned char>(word[same])) == name[same])
-		{
-			++same;
-		}
-		if (name[same] == '\0')
-		{
-			const std::size_t behind = word.find_first_not_of(kWordLetters, same + 1);
-			const bool tail = name[0] == 'n' && word[same] == '(' && behind != std::string::npos && word[behind] == ')';
-			return at + (tail ? behind + 1 : same); // "nan(1)"
-		}
-	}
-	const auto digits = [last](const char* from)
-	{
-		while (from != last && *from >= '0' && *from <= '9')
-		{
-			++from;
-		}
-		return from;
-	};
-	const char* end = digits(at);
-	auto count = end - at;
-	if (end != last && *end == '.')
-	{
-		const char* const begin = end + 1;
-		end = digits(begin);
-		count += end - begin;
-	}
-	if (count == 0)
-	{
-		return nullptr;
-	}
-	if (end != last && (*end == 'e' || *end == 'E'))
-	{
-		const char* from = end + 1;
-		from += from != last && (*from == '-' || *from == '+') ? 1 : 0;
-		const char* const behind = digits(from);
-		end = behind != from ? behind : end;
-	}
-	return end;
+	static const std::regex number(R"(-?(inf(inity)?|nan(\(\w*\))?|(\d+\.?\d*|\.\d+)(e[-+]?\d+)?))", std::regex::icase);
+	std::cmatch match;
+	return std::regex_search(first, last, match, number, std::regex_constants::match_continuous) ? match[0].second : nullptr;
 }
 
 } // namespace

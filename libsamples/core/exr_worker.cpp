@@ -120,8 +120,7 @@ bool isBefore(const std::string& a, const std::string& b)
 	return place(a) < place(b);
 }
 
-// The names of the channels in that order; none if one of them is not of floats, or has other samples than one per pixel, or if the
-// picture is deep.
+// The channels' names in that order; none if one is not of floats or not sampled once per pixel, or the picture is deep.
 std::vector<std::string> channelNames(const Imf::Header& header)
 {
 	std::vector<std::string> names;
@@ -142,49 +141,25 @@ std::vector<std::string> channelNames(const Imf::Header& header)
 	return names;
 }
 
-// True for attributes that headerOf() writes or that every file has; copies their text or matrix into the image.
-bool takeAttribute(const std::string& name, const Imf::Attribute& attribute, Image& image)
+// Copies a text or a matrix into the image.
+void takeAttribute(const std::string& name, const Imf::Attribute& attribute, Image& image)
 {
-	if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute))
+	const auto add = [&](const auto* numbers, bool wide)
 	{
-		if (name != "Software" && name.find("nook:") != 0 && !(name == "capDate" && text->value().empty()))
-		{
-			return false;
-		}
-		if (!text->value().empty()) // e.g. our empty date
-		{
-			image.notes.push_back({name, text->value()});
-		}
-		return true;
-	}
-	ImageMatrix matrix{name, {}, false};
-	if (const auto* narrow = dynamic_cast<const Imf::M44fAttribute*>(&attribute))
+		std::copy_n(numbers, 16, image.matrices.emplace_back(ImageMatrix{name, {}, wide}).values.begin());
+	};
+	if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute); text != nullptr && !text->value().empty())
 	{
-		std::copy_n(narrow->value().getValue(), matrix.values.size(), matrix.values.begin());
-		image.matrices.push_back(matrix);
-		return true;
+		image.notes.push_back({name, text->value()});
 	}
-	if (const auto* wide = dynamic_cast<const Imf::M44dAttribute*>(&attribute))
+	else if (const auto* narrow = dynamic_cast<const Imf::M44fAttribute*>(&attribute))
 	{
-		matrix.wide = true;
-		std::copy_n(wide->value().getValue(), matrix.values.size(), matrix.values.begin());
-		image.matrices.push_back(matrix);
-		return true;
+		add(narrow->value().getValue(), false);
 	}
-	constexpr std::array<std::string_view, 8> kEveryFile{"channels",           "compression",      "dataWindow",
-														 "displayWindow",      "lineOrder",        "pixelAspectRatio",
-														 "screenWindowCenter", "screenWindowWidth"};
-	return std::find(kEveryFile.begin(), kEveryFile.end(), name) != kEveryFile.end();
-}
-
-// True if encode() may have written a file with that header; its attributes remain to be seen.
-bool looksEncoded(const Imf::Header& header)
-{
-	const Imath::Box2i window = header.dataWindow();
-	const bool zip = header.compression() == Imf::ZIP_COMPRESSION;
-	return window == header.displayWindow() && window.min == Imath::V2i(0, 0) &&
-		   (zip || header.compression() == Imf::NO_COMPRESSION) && header.lineOrder() == Imf::INCREASING_Y &&
-		   !header.hasTileDescription();
+	else if (const auto* wide = dynamic_cast<const Imf::M44dAttribute*>(&attribute))
+	{
+		add(wide->value().getValue(), true);
+	}
 }
 
 Imath::V2i sizeOf(const Imf::Header& header)
@@ -193,16 +168,23 @@ Imath::V2i sizeOf(const Imf::Header& header)
 	return window.max - window.min + Imath::V2i(1, 1);
 }
 
-// Nothing if `all` is false and encode() did not write the file.
-std::optional<Image> imageOf(const std::string& bytes, const std::string& name, bool all)
+std::optional<Image> imageOf(const std::string& bytes, const std::string& name)
 {
 	Imf::StdISStream memory;
 	memory.str(bytes);
 	Imf::InputFile input(memory, 0);
 	const Imf::Header& header = input.header();
 	Image image;
+	for (auto at = header.begin(); at != header.end(); ++at)
+	{
+		takeAttribute(at.name(), at.attribute(), image);
+		if (image.notes.size() + image.matrices.size() > kMostNames)
+		{
+			refuseInput(name, "more than " + std::to_string(kMostNames) + " attributes", "fewer");
+		}
+	}
 	image.channels = channelNames(header);
-	if (image.channels.empty() || (!all && (!looksEncoded(header) || !input.isComplete())))
+	if (image.channels.empty())
 	{
 		return std::nullopt;
 	}
@@ -213,13 +195,6 @@ std::optional<Image> imageOf(const std::string& bytes, const std::string& name, 
 	constexpr std::array<const char*, Imf::NUM_COMPRESSION_METHODS> kCompressions{"none",  "rle", "zips", "zip",  "piz",
 																				  "pxr24", "b44", "b44a", "dwaa", "dwab"};
 	image.notes.push_back({"compression", kCompressions[static_cast<std::size_t>(header.compression())]});
-	for (auto at = header.begin(); at != header.end(); ++at)
-	{
-		if (!takeAttribute(at.name(), at.attribute(), image) && !all)
-		{
-			return std::nullopt;
-		}
-	}
 	const std::size_t count = image.channels.size();
 	image.values.resize(checkedTexels(image.width_px, image.height_px, static_cast<int>(count), kMaxTexels, name, "") * count);
 	const std::ptrdiff_t begin =
@@ -248,9 +223,9 @@ template <class T, class Read> Decoded<T> unlessBroken(const Read& read)
 	}
 }
 
-Decoded<Image> decoded(const std::string& bytes, const std::string& name, bool all)
+Decoded<Image> decoded(const std::string& bytes, const std::string& name)
 {
-	return unlessBroken<Image>([&] { return imageOf(bytes, name, all); });
+	return unlessBroken<Image>([&] { return imageOf(bytes, name); });
 }
 
 std::optional<AlphaImage> alphaOf(const std::string& bytes, const EncodedAlpha& picture, std::size_t max_texels)

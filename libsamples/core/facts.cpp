@@ -19,13 +19,6 @@ std::string numberJson(double value)
 	return std::isfinite(value) ? doubleText(value) : "null";
 }
 
-// In one line.
-std::string itemJson(std::string_view fields)
-{
-	std::string line = joinedText(fields, "", [](const char c) { return c == '\n' ? "" : std::string(1, c == '\t' ? ' ' : c); });
-	return "{" + line + " }";
-}
-
 } // namespace
 
 void Facts::add(std::string_view name, std::string json, std::string_view words, std::string shown)
@@ -61,9 +54,13 @@ void Facts::numbers(std::string_view name, const std::vector<double>& values)
 
 void Facts::items(std::string_view name, const std::vector<Facts>& values)
 {
-	const auto textOf = [](const Facts& item)
+	const auto textOf = [](const Facts& item) // in one line
 	{
-		return "\n\t\t" + itemJson(item.fields());
+		const auto inLine = [](const char c)
+		{
+			return c == '\n' ? "" : std::string(1, c == '\t' ? ' ' : c);
+		};
+		return "\n\t\t{" + joinedText(item.fields(), "", inLine) + " }";
 	};
 	add(name, values.empty() ? "[]" : "[" + joinedText(values, ",", textOf) + "\n\t]");
 }
@@ -75,15 +72,8 @@ void Facts::line(std::string_view words)
 
 std::string Facts::fields() const
 {
-	std::string json;
-	for (const Fact& fact : m_facts)
-	{
-		if (!fact.name.empty())
-		{
-			json += (json.empty() ? "\n\t" : ",\n\t") + jsonText(fact.name) + ": " + fact.json;
-		}
-	}
-	return json;
+	const std::vector<Fact> named = itemsWhere(m_facts, [](const Fact& fact) { return !fact.name.empty(); });
+	return joinedText(named, ",", [](const Fact& fact) { return "\n\t" + jsonText(fact.name) + ": " + fact.json; });
 }
 
 std::string Facts::json() const
@@ -112,13 +102,12 @@ std::string measureLines(const std::vector<Measure>& measures)
 	{
 		width = std::max(width, measure.name.size());
 	}
-	std::string lines;
-	for (const Measure& measure : measures)
+	const auto lineOf = [width](const Measure& measure)
 	{
-		lines += "  " + measure.name + std::string(width - measure.name.size() + 2, ' ') +
-				 (std::isfinite(measure.value) ? roundedText(measure.value, 6) : "infinite") + "\n";
-	}
-	return lines;
+		return "  " + measure.name + std::string(width - measure.name.size() + 2, ' ') +
+			   (std::isfinite(measure.value) ? roundedText(measure.value, 6) : "infinite") + "\n";
+	};
+	return joinedText(measures, "", lineOf);
 }
 
 } // namespace nook

@@ -40,8 +40,7 @@ void writeAll(std::FILE* file, const std::string& path, std::string_view bytes)
 	}
 }
 
-// In the target's folder, so that the rename stays within one file system. The extension is kept because libraries choose a format
-// by it.
+// In the target's folder, so that the rename stays in one file system; libraries choose a format by the extension.
 std::filesystem::path temporaryFor(const std::filesystem::path& target)
 {
 	static std::atomic<unsigned> number{0}; // keeps names unique within the process

@@ -88,8 +88,7 @@ std::string readFile(const std::string& path);
 // fail before long work; "-" passes. Writing can still fail later.
 void checkWritable(const std::string& path);
 
-// Returns the same text for every name of one file, through links and other spellings: device and inode if it exists, else its
-// resolved path. "-" is itself.
+// Returns the same text for every name of one file: device and inode if it exists, else its resolved path; "-" is itself.
 std::string fileIdentity(const std::string& path);
 
 // Writes a temporary file next to `path` and renames it. "-" is standard output; devices and pipes are written directly. A failure

@@ -81,37 +81,6 @@ std::size_t storedBytes(const std::vector<EncodedAlpha>& pictures)
 	return bytes;
 }
 
-// Rejects an OpenEXR with too many attributes: OpenImageIO takes quadratic time to read them.
-void checkAttributes(std::string_view bytes, const std::string& name)
-{
-	std::size_t at = 8;
-	for (std::size_t count = 0; looksExr(bytes) && at < bytes.size() && bytes[at] != '\0'; ++count)
-	{
-		const std::size_t type = bytes.find('\0', at);
-		const std::size_t end = bytes.find('\0', type == std::string_view::npos ? type : type + 1);
-		uint32_t size = 0;
-		if (end == std::string_view::npos || bytes.size() - end <= sizeof size)
-		{
-			return; // truncated: the decoder reports it
-		}
-		std::memcpy(&size, bytes.data() + end + 1, sizeof size);
-		at = end + 1 + sizeof size + size;
-		if (count > kMostNames)
-		{
-			throw Error(ExitCode::invalid_input,
-						name + ": found more than " + std::to_string(kMostNames) + " attributes, expected fewer");
-		}
-	}
-}
-
-// True if a file begins like nook's own OpenEXR files.
-bool looksOurs(std::string_view bytes)
-{
-	constexpr std::string_view kExr{"\x76\x2F\x31\x01\x02\0\0\0Software\0string\0", 24};
-	constexpr std::string_view kNook = "nook ";
-	return bytes.starts_with(kExr) && bytes.substr(kExr.size() + sizeof(uint32_t)).starts_with(kNook);
-}
-
 // First bytes of a file; empty if it cannot be read, which the decoder reports.
 std::string beginOf(const std::string& path)
 {
@@ -134,41 +103,13 @@ std::string beginOf(const std::string& path)
 					"PNG, JPEG, TGA, BMP, EXR or uncompressed KTX2");
 }
 
-// Decodes with a worker that does not need OpenImageIO; false if it declines the file, with the defect.
-bool decodeBy(const char* worker, bool all, std::string_view bytes, const std::string& name, const IsolationLimits& limits,
-			  Image& image, std::string& defect)
-{
-	bool taken = false;
-	isolate(
-		ask(worker, kDecode), name, limits,
-		[&](ValueWriter& to)
-		{
-			to.value(all);
-			to.text(name);
-			to.values(bytes);
-		},
-		[&](ValueReader& from)
-		{
-			image = {};
-			taken = from.value<bool>();
-			if (taken)
-			{
-				receive(image, from);
-				return;
-			}
-			defect = from.text();
-		});
-	return taken;
-}
-
 // Decodes the opacities of the pictures of one file, `all`, under a common limit.
 class AlphaDecoder
 {
 public:
 	AlphaDecoder(const std::vector<EncodedAlpha>& pictures, const std::string& all, std::size_t max_texels)
 		: m_pictures(pictures), m_all(all), m_max_texels(max_texels), m_stored(storedBytes(pictures)),
-		  m_most_in_all(std::min(kMaxTexelsInAll * max_texels, max_texels + kTexelsPerByte * m_stored)), m_images(pictures.size()),
-		  m_taken(pictures.size()), m_defects(pictures.size())
+		  m_most_in_all(std::min(kMaxTexelsInAll * max_texels, max_texels + kTexelsPerByte * m_stored)), m_decoded(pictures.size())
 	{
 	}
 
@@ -179,7 +120,7 @@ public:
 		std::vector<const EncodedAlpha*> pictures;
 		for (std::size_t i = 0; i < m_pictures.size(); ++i)
 		{
-			if (m_taken[i] == 0 && isFor(m_pictures[i]))
+			if (!m_decoded[i].image && isFor(m_pictures[i]))
 			{
 				asked.push_back(i);
 				pictures.push_back(&m_pictures[i]);
@@ -216,32 +157,30 @@ public:
 
 	bool isDone() const
 	{
-		return std::find(m_taken.begin(), m_taken.end(), 0) == m_taken.end();
+		return std::all_of(m_decoded.begin(), m_decoded.end(), [](const auto& one) { return one.image.has_value(); });
 	}
 
 	std::vector<AlphaImage> takeImages()
 	{
-		const auto left = std::find(m_taken.begin(), m_taken.end(), 0);
-		if (left != m_taken.end())
+		std::vector<AlphaImage> images;
+		for (Decoded<AlphaImage>& decoded : m_decoded)
 		{
-			const auto i = static_cast<std::size_t>(left - m_taken.begin());
-			refuseDeclined(m_pictures[i].name, m_defects[i]);
+			if (!decoded.image)
+			{
+				refuseDeclined(m_pictures[images.size()].name, decoded.defect);
+			}
+			images.push_back(std::move(*decoded.image));
 		}
-		return std::move(m_images);
+		return images;
 	}
 
 private:
 	void take(std::size_t i, ValueReader& from)
 	{
 		m_name = m_pictures[i].name;
-		m_taken[i] = from.value<bool>() ? 1 : 0;
-		if (m_taken[i] == 0)
-		{
-			m_defects[i] = from.text();
-			return;
-		}
-		receive(m_images[i], from);
-		m_texels += m_pictures[i].uses * m_images[i].alpha.size();
+		Decoded<AlphaImage>& decoded = m_decoded[i];
+		receive(decoded, from);
+		m_texels += decoded.image ? m_pictures[i].uses * decoded.image->alpha.size() : 0;
 		if (m_texels > m_most_in_all)
 		{
 			throw Error(ExitCode::invalid_input, m_all + ": found masks of more than " + std::to_string(m_most_in_all) +
@@ -256,93 +195,10 @@ private:
 	std::size_t m_most_in_all;
 	std::size_t m_texels = 0;
 	std::string m_name; // picture being decoded
-	std::vector<AlphaImage> m_images;
-	std::vector<uint8_t> m_taken;       // 1: decoded
-	std::vector<std::string> m_defects; // why a picture was declined
+	std::vector<Decoded<AlphaImage>> m_decoded;
 };
 
-} // namespace
-
-Image decodeImage(std::string_view bytes, const std::string& name)
-{
-	checkAttributes(bytes, name);
-	Image image;
-	// Deflate expands at most 1032 times, and each byte becomes a 4-byte float.
-	const IsolationLimits limits{std::min(kTables + 4200 * bytes.size(), kMostReadingMemory),
-								 kTime_s + static_cast<int>(bytes.size() / kBytesPerSecond)};
-	const char* const worker = looksExr(bytes) ? kExrWorker : kPictureWorker;
-	std::string defect;
-	if ((looksOurs(bytes) || looksPng(bytes)) && decodeBy(worker, false, bytes, name, limits, image, defect))
-	{
-		return image;
-	}
-	if (!hasWorker(kImageWorker))
-	{
-		if (!decodeBy(worker, true, bytes, name, limits, image, defect))
-		{
-			refuseDeclined(name, defect);
-		}
-		return image;
-	}
-	isolate(
-		ask(kImageWorker, kDecode), name, limits,
-		[&](ValueWriter& to)
-		{
-			to.text(name);
-			to.values(bytes);
-		},
-		[&](ValueReader& from)
-		{
-			image = {};
-			receive(image, from);
-		});
-	return image;
-}
-
-std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all, std::size_t max_texels)
-{
-	AlphaDecoder decoder(pictures, all, max_texels);
-	const auto isExr = [](const EncodedAlpha& picture)
-	{
-		return looksExr(picture.path.empty() ? picture.bytes : beginOf(picture.path));
-	};
-	decoder.askBy(kExrWorker, isExr);
-	decoder.askBy(kPictureWorker, [&](const EncodedAlpha& picture) { return !isExr(picture); });
-	if (!decoder.isDone() && hasWorker(kImageWorker))
-	{
-		decoder.askBy(kImageWorker, [](const EncodedAlpha& /*picture*/) { return true; });
-	}
-	return decoder.takeImages();
-}
-
-Image readImage(const std::string& path)
-{
-	return decodeImage(readFile(path), path); // throws with the system's reason
-}
-
-std::string exrBytes(const Image& image)
-{
-	assert(image.values.size() == valuesOf(image.width_px, image.height_px, static_cast<int>(image.channels.size())));
-	ImageToEncode exr{.width_px = image.width_px, .height_px = image.height_px};
-	exr.channels = image.channels;
-	exr.attributes = {{"compression", "zip"}, {"capDate", ""}};
-	exr.matrices = image.matrices;
-	return encoded(std::move(exr), image.values.data(), image.notes);
-}
-
-std::string exrBytes(int width_px, int height_px, std::span<const float> rgba, const Notes& notes)
-{
-	assert(rgba.size() == valuesOf(width_px, height_px, 4));
-	ImageToEncode exr{.width_px = width_px, .height_px = height_px};
-	exr.channels = {"R", "G", "B", "A"};
-	exr.attributes = {{"compression", "none"}, {"capDate", ""}};
-	return encoded(std::move(exr), rgba.data(), notes);
-}
-
 // Writes nook's pictures as PNG with libpng, byte for byte what OpenImageIO 2.4 writes. Needs no worker because it reads no file.
-
-namespace
-{
 
 struct PngPicture
 {
@@ -455,22 +311,85 @@ std::string fileOf(const PngPicture& picture, const char* colours, const Notes& 
 	return std::move(writer.bytes);
 }
 
-[[maybe_unused]] std::size_t valuesOfPng(int width_px, int height_px, int channels)
+} // namespace
+
+Image decodeImage(std::string_view bytes, const std::string& name)
 {
-	return static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) * static_cast<std::size_t>(channels);
+	// Deflate expands at most 1032 times, and each byte becomes a 4-byte float.
+	const IsolationLimits limits{std::min(kTables + 4200 * bytes.size(), kMostReadingMemory),
+								 kTime_s + static_cast<int>(bytes.size() / kBytesPerSecond)};
+	Decoded<Image> decoded;
+	for (const char* const worker : {looksExr(bytes) ? kExrWorker : kPictureWorker, kImageWorker})
+	{
+		if (worker == kImageWorker && !hasWorker(worker))
+		{
+			break;
+		}
+		isolate(
+			ask(worker, kDecode), name, limits,
+			[&](ValueWriter& to)
+			{
+				to.text(name);
+				to.values(bytes);
+			},
+			[&](ValueReader& from) { receive(decoded, from); });
+		if (decoded.image)
+		{
+			return std::move(*decoded.image);
+		}
+	}
+	refuseDeclined(name, decoded.defect);
 }
 
-} // namespace
+std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all, std::size_t max_texels)
+{
+	AlphaDecoder decoder(pictures, all, max_texels);
+	const auto isExr = [](const EncodedAlpha& picture)
+	{
+		return looksExr(picture.path.empty() ? picture.bytes : beginOf(picture.path));
+	};
+	decoder.askBy(kExrWorker, isExr);
+	decoder.askBy(kPictureWorker, [&](const EncodedAlpha& picture) { return !isExr(picture); });
+	if (!decoder.isDone() && hasWorker(kImageWorker))
+	{
+		decoder.askBy(kImageWorker, [](const EncodedAlpha& /*picture*/) { return true; });
+	}
+	return decoder.takeImages();
+}
+
+Image readImage(const std::string& path)
+{
+	return decodeImage(readFile(path), path); // throws with the system's reason
+}
+
+std::string exrBytes(const Image& image)
+{
+	assert(image.values.size() == valuesOf(image.width_px, image.height_px, static_cast<int>(image.channels.size())));
+	ImageToEncode exr{.width_px = image.width_px, .height_px = image.height_px};
+	exr.channels = image.channels;
+	exr.attributes = {{"compression", "zip"}, {"capDate", ""}};
+	exr.matrices = image.matrices;
+	return encoded(std::move(exr), image.values.data(), image.notes);
+}
+
+std::string exrBytes(int width_px, int height_px, std::span<const float> rgba, const Notes& notes)
+{
+	assert(rgba.size() == valuesOf(width_px, height_px, 4));
+	ImageToEncode exr{.width_px = width_px, .height_px = height_px};
+	exr.channels = {"R", "G", "B", "A"};
+	exr.attributes = {{"compression", "none"}, {"capDate", ""}};
+	return encoded(std::move(exr), rgba.data(), notes);
+}
 
 std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> rgb, const Notes& notes)
 {
-	assert(rgb.size() == valuesOfPng(width_px, height_px, 3));
+	assert(rgb.size() == valuesOf(width_px, height_px, 3));
 	return fileOf({width_px, height_px, 3, 8, rgb.data()}, "sRGB", notes);
 }
 
 std::string alphaPngBytes(int width_px, int height_px, std::span<const uint8_t> alpha)
 {
-	assert(alpha.size() == valuesOfPng(width_px, height_px, 1));
+	assert(alpha.size() == valuesOf(width_px, height_px, 1));
 	std::vector<uint8_t> rgba(4 * alpha.size(), 255);
 	for (std::size_t i = 0; i < alpha.size(); ++i)
 	{
@@ -481,7 +400,7 @@ std::string alphaPngBytes(int width_px, int height_px, std::span<const uint8_t> 
 
 std::string pngBytes(int width_px, int height_px, std::span<const uint16_t> rgba, const Notes& notes)
 {
-	assert(rgba.size() == valuesOfPng(width_px, height_px, 4));
+	assert(rgba.size() == valuesOf(width_px, height_px, 4));
 	return fileOf({width_px, height_px, 4, 16, reinterpret_cast<const png_byte*>(rgba.data())}, "Linear", notes);
 }
 

@@ -4,6 +4,7 @@
 // rest of nook and may be missing, so its worker starts only for a picture that the others decline, and is then kept.
 #pragma once
 
+#include "core/archive.h"
 #include "core/file.h"
 #include "core/image.h"
 #include "core/value_stream.h"
@@ -25,10 +26,8 @@ inline constexpr const char* kImageWorker = "nook_image_worker";
 inline constexpr const char* kExrWorker = "nook_exr_worker";
 inline constexpr const char* kPictureWorker = "nook_picture_worker";
 inline constexpr const char* kEncode = "encode"; // ImageToEncode and its pixels → file bytes; kExrWorker only
-// For kImageWorker: a name and file bytes → Image. For the others: whether to decode all files that they can, or only the common
-// ones that they are known to read as OpenImageIO does, notes included; a name and file bytes → Decoded<Image>.
-inline constexpr const char* kDecode = "decode";
-// AlphaRequest → Decoded<AlphaImage> for each picture; kImageWorker declines none.
+inline constexpr const char* kDecode = "decode"; // a name and file bytes → Decoded<Image>
+// A limit of texels and EncodedAlphas → Decoded<AlphaImage> for each. kImageWorker declines no picture.
 inline constexpr const char* kDecodeAlphas = "decode alphas";
 
 inline constexpr std::size_t kMostNames = 10000; // OpenImageIO takes quadratic time in their number
@@ -49,11 +48,6 @@ struct ImageToEncode
 	}
 };
 
-void send(const ImageToEncode& image, ValueWriter& to);
-void send(const Image& image, ValueWriter& to);
-void send(const EncodedAlpha& mask, ValueWriter& to);
-void send(const AlphaImage& image, ValueWriter& to);
-
 // A picture, or why the worker declines it: the defect of a broken file, or nothing for a kind of file that it does not read.
 template <class T> struct Decoded
 {
@@ -61,30 +55,124 @@ template <class T> struct Decoded
 	std::string defect;
 };
 
-template <class T> void send(const Decoded<T>& decoded, ValueWriter& to)
+// Writes or reads the members of a value, by one visitor per type for both directions.
+template <class Stream> class Members
 {
-	to.value(decoded.image.has_value());
-	if (decoded.image)
-	{
-		send(*decoded.image, to);
-	}
-	else
-	{
-		to.text(decoded.defect);
-	}
-}
+public:
+	explicit Members(Stream& stream) : m_stream(stream) {}
 
-// Request of kDecodeAlphas. Wire format: the limit, the number of pictures, then each picture.
-struct AlphaRequest
-{
-	std::size_t max_texels = kMaxTexels;
-	std::vector<EncodedAlpha> pictures;
+	template <class... Values> void operator()(Values&... values)
+	{
+		(pass(values), ...);
+	}
+
+private:
+	static constexpr bool kReads = std::is_same_v<Stream, ValueReader>;
+	static constexpr std::size_t kMostBytes = kMostTexels; // of a list
+
+	template <class Values> void list(Values& values)
+	{
+		if constexpr (kReads)
+		{
+			values.clear();
+			m_stream.values(values, kMostBytes / sizeof(typename Values::value_type));
+		}
+		else
+		{
+			m_stream.values(values);
+		}
+	}
+	template <class Value> void pass(Value& value)
+	{
+		if constexpr (!IsPlain<Value>::value)
+		{
+			visit(*this, value);
+		}
+		else if constexpr (kReads)
+		{
+			value = m_stream.template value<Value>();
+		}
+		else
+		{
+			m_stream.value(value);
+		}
+	}
+	void pass(std::string& text)
+	{
+		list(text);
+	}
+	template <class Item> void pass(std::vector<Item>& items)
+	{
+		if constexpr (IsPlain<Item>::value)
+		{
+			list(items);
+			return;
+		}
+		std::size_t count = items.size();
+		pass(count);
+		if (count > kMostNames)
+		{
+			throw StreamEnded{};
+		}
+		items.resize(count);
+		for (Item& item : items)
+		{
+			pass(item);
+		}
+	}
+	template <class Value> void pass(std::optional<Value>& value)
+	{
+		bool there = value.has_value();
+		pass(there);
+		value = !there ? std::nullopt : kReads ? std::optional<Value>(std::in_place) : std::move(value);
+		if (there)
+		{
+			pass(*value);
+		}
+	}
+
+	Stream& m_stream;
 };
 
-void receive(ImageToEncode& image, ValueReader& from);
-void receive(Image& image, ValueReader& from);
-void receive(EncodedAlpha& mask, ValueReader& from);
-void receive(AlphaImage& image, ValueReader& from);
+template <class Io> void visit(Io& io, Note& note)
+{
+	io(note.key, note.value);
+}
+template <class Io> void visit(Io& io, ImageMatrix& matrix)
+{
+	io(matrix.key, matrix.values, matrix.wide);
+}
+template <class Io> void visit(Io& io, ImageToEncode& image)
+{
+	io(image.width_px, image.height_px, image.channels, image.attributes, image.matrices);
+}
+template <class Io> void visit(Io& io, Image& image)
+{
+	io(image.width_px, image.height_px, image.cropped, image.channels, image.halves, image.values, image.notes, image.matrices);
+}
+template <class Io> void visit(Io& io, EncodedAlpha& mask)
+{
+	io(mask.name, mask.path, mask.bytes, mask.channel);
+}
+template <class Io> void visit(Io& io, AlphaImage& image)
+{
+	io(image.width_px, image.height_px, image.alpha);
+}
+template <class Io, class T> void visit(Io& io, Decoded<T>& decoded)
+{
+	io(decoded.image, decoded.defect);
+}
+
+template <class Value> void send(const Value& value, ValueWriter& to)
+{
+	Members<ValueWriter> write(to);
+	write(const_cast<Value&>(value)); // NOLINT: writing changes nothing
+}
+template <class Value> void receive(Value& value, ValueReader& from)
+{
+	Members<ValueReader> read(from);
+	read(value);
+}
 
 // kDecodeAlphas of a worker that decodes one picture with `decode`.
 using DecodeAlpha = Decoded<AlphaImage> (*)(std::string_view bytes, const EncodedAlpha& picture, std::size_t max_texels);
@@ -94,19 +182,17 @@ template <DecodeAlpha decode> void answerAlphas(ValueReader& from, ValueWriter& 
 	answerAlphas(from, answer, decode);
 }
 
-// Likewise kDecode of kExrWorker and kPictureWorker.
-using DecodeImage = Decoded<Image> (*)(const std::string& bytes, const std::string& name, bool all);
+// Likewise kDecode.
+using DecodeImage = Decoded<Image> (*)(const std::string& bytes, const std::string& name);
 template <DecodeImage decode> void answerImage(ValueReader& from, ValueWriter& answer)
 {
-	const bool all = from.value<bool>();
 	const std::string name = from.text();
 	std::string bytes;
 	from.values(bytes, kMaxFileBytes);
-	send(decode(bytes, name, all), answer);
+	send(decode(bytes, name), answer);
 }
 
-// The number of texels. Throws Error (invalid_input) if there are none, more than `most`, or too many values; `option` changes the
-// limit.
+// The number of texels. Throws Error (invalid_input) if it is 0, above `most` (set by `option`), or there are too many values.
 std::size_t checkedTexels(int width_px, int height_px, int channels, std::size_t most, const std::string& name,
 						  const char* option = " (max-texels)");
 

@@ -14,14 +14,6 @@ namespace nook
 namespace
 {
 
-// Pictures are decoded one at a time, and a thread pool would count against the memory limit. OpenImageIO starts its own pool at
-// the first call, whatever the settings.
-void keepToOneThread()
-{
-	OIIO::attribute("threads", 1);
-	OIIO::attribute("exr_threads", -1);
-}
-
 [[noreturn]] void refuse(const std::string& name, const std::string& reason)
 {
 	std::string line = reason;
@@ -108,12 +100,11 @@ void withDecoder(std::string_view bytes, const std::string& name, const std::fun
 	refuse(name, "an unknown format");
 }
 
-void decode(ValueReader& request, ValueWriter& answer)
+Decoded<Image> decodedImage(const std::string& bytes, const std::string& name)
 {
-	const std::string name = request.text();
-	std::string bytes;
-	request.values(bytes, kMaxFileBytes);
-	withDecoder(bytes, name, [&](OIIO::ImageInput& input) { send(taken(input, name), answer); });
+	Decoded<Image> answer;
+	withDecoder(bytes, name, [&](OIIO::ImageInput& input) { answer.image = taken(input, name); });
+	return answer;
 }
 
 std::optional<AlphaImage> alphaOf(OIIO::ImageInput& input, const EncodedAlpha& picture, std::size_t max_texels)
@@ -153,6 +144,14 @@ Decoded<AlphaImage> decodedAlpha(std::string_view bytes, const EncodedAlpha& pic
 int main(int argc, char** argv)
 {
 	using namespace nook;
-	constexpr std::array<WorkerFunction, 2> kFunctions{{{kDecode, decode}, {kDecodeAlphas, answerAlphas<decodedAlpha>}}};
+	constexpr std::array<WorkerFunction, 2> kFunctions{
+		{{kDecode, answerImage<decodedImage>}, {kDecodeAlphas, answerAlphas<decodedAlpha>}}};
+	// Pictures are decoded one at a time, and a thread pool would count against the memory limit. OpenImageIO starts its own pool
+	// at the first call, whatever the settings.
+	const auto keepToOneThread = []
+	{
+		OIIO::attribute("threads", 1);
+		OIIO::attribute("exr_threads", -1);
+	};
 	return serveRequests(argc, argv, kFunctions, keepToOneThread);
 }

@@ -51,8 +51,7 @@ struct WorkerFunction
 	void (*run)(ValueReader& request, ValueWriter& answer) = nullptr;
 };
 
-// Serves requests until the parent ends; returns main()'s exit code. `prepare` runs before the first request; if it fails, the
-// worker cannot run on this machine.
+// Serves requests until the parent ends; returns main()'s exit code. If `prepare`, run first, fails, the worker cannot run here.
 int serveRequests(int argc, char** argv, std::span<const WorkerFunction> functions, const std::function<void()>& prepare = {});
 
 // Shared by both sides: request header and end-of-message codes.

@@ -15,7 +15,6 @@ std::string jsonLine(const nlohmann::json& value);
 std::string jsonLine(const nlohmann::ordered_json& value);
 
 // Formatted for people too: one value per line.
-std::string jsonFile(const nlohmann::json& value);
 std::string jsonFile(const nlohmann::ordered_json& value);
 
 // Returns a `discarded` value if the text is not JSON. For text that must be JSON use parseJson (json_reader.h).

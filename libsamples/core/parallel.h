@@ -28,8 +28,7 @@ template <class Body> void parallelForAll(std::size_t count, int threads, const 
 				});
 }
 
-// Calls body() once; parallel loops inside it (TBB) use at most `threads` threads (≥ 1).
-// Throws as parallelFor.
+// Calls body() once; parallel loops inside it (TBB) use at most `threads` threads (≥ 1). Throws as parallelFor.
 void onThreads(int threads, const std::function<void()>& body);
 
 // Processors this process may use, at least 1.

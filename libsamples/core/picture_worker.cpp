@@ -16,7 +16,6 @@
 #include <csetjmp>
 #include <cstring>
 #include <memory>
-#include <set>
 #include <span>
 
 namespace nook
@@ -41,7 +40,8 @@ public:
 	int height_px = 0;
 	int channels = 0;
 	int bits = 8; // per value
-	Notes texts;  // stored before the pixels
+	bool cropped = false;
+	Notes texts; // stored before the pixels
 
 	// The library's own words for a broken file.
 	std::string defect() const
@@ -53,55 +53,6 @@ protected:
 	std::array<char, JMSG_LENGTH_MAX> m_defect{};
 	std::jmp_buf m_back{};
 };
-
-uint32_t bigEndian(std::string_view bytes, std::size_t at)
-{
-	uint32_t value = 0;
-	for (std::size_t i = 0; i < sizeof value; ++i)
-	{
-		value = value << 8U | static_cast<unsigned char>(bytes[at + i]);
-	}
-	return value;
-}
-
-// True if only the header, texts and pixels affect what is read, as in files of nook, libpng's simple interface and browsers.
-bool hasPlainChunks(std::string_view bytes)
-{
-	constexpr std::size_t kSignature = 8; // bytes before the first chunk
-	constexpr std::size_t kAround = 12;   // chunk overhead in bytes
-	constexpr std::array<std::string_view, 8> kPlain{"IHDR", "gAMA", "sRGB", "cHRM", "sBIT", "tEXt", "IDAT", "IEND"};
-	std::size_t texts = 0;
-	for (std::size_t at = kSignature; at < bytes.size();)
-	{
-		if (bytes.size() - at < kAround || bytes.size() - at - kAround < bigEndian(bytes, at))
-		{
-			return false;
-		}
-		const std::size_t size = bigEndian(bytes, at);
-		const std::string_view type = bytes.substr(at + 4, 4);
-		const std::string_view content = bytes.substr(at + 8, size);
-		const bool moved = type == "oFFs" && content.find_first_not_of('\0') != std::string_view::npos;
-		if ((std::find(kPlain.begin(), kPlain.end(), type) == kPlain.end() && type != "oFFs") || moved)
-		{
-			return false;
-		}
-		texts += type == "tEXt" ? 1U : 0U;
-		at += kAround + size;
-	}
-	return texts <= kMostNames;
-}
-
-// True if OpenImageIO would keep all texts unchanged: it renames some, and keeps one per case-insensitive key.
-bool arePlain(const Notes& texts)
-{
-	std::set<std::string> keys{"", "description", "author", "title", "xml:com.adobe.xmp"};
-	return std::all_of(texts.begin(), texts.end(),
-					   [&](const Note& text)
-					   {
-						   const std::string key = lowered(text.key);
-						   return !key.starts_with("raw profile") && keys.insert(key).second;
-					   });
-}
 
 class PngReader : public PictureReader
 {
@@ -116,7 +67,7 @@ public:
 		png_destroy_read_struct(&m_png, &m_info, nullptr);
 	}
 
-	// Interlaced files, palettes and small integers give the values that a plain file would: `is_plain` tells.
+	// Interlaced files, palettes and small integers give the values that a plain file would.
 	bool readHeader()
 	{
 		if (m_info == nullptr || setjmp(m_back) != 0)
@@ -126,14 +77,13 @@ public:
 		png_set_read_fn(m_png, this, onRead);
 		png_read_info(m_png, m_info);
 		m_passes = png_set_interlace_handling(m_png);
-		is_plain =
-			m_passes == 1 && png_get_color_type(m_png, m_info) != PNG_COLOR_TYPE_PALETTE && png_get_bit_depth(m_png, m_info) >= 8;
 		png_set_expand(m_png);
 		png_read_update_info(m_png, m_info);
 		width_px = static_cast<int>(png_get_image_width(m_png, m_info));
 		height_px = static_cast<int>(png_get_image_height(m_png, m_info));
 		channels = png_get_channels(m_png, m_info);
 		bits = png_get_bit_depth(m_png, m_info);
+		cropped = png_get_x_offset_pixels(m_png, m_info) != 0 || png_get_y_offset_pixels(m_png, m_info) != 0;
 		return true;
 	}
 	void readTexts()
@@ -172,8 +122,6 @@ public:
 		}
 		return true;
 	}
-
-	bool is_plain = false;
 
 private:
 	[[noreturn]] static void onError(png_structp png, png_const_charp message)
@@ -408,14 +356,13 @@ private:
 	bool m_up = true; // the last row is stored first
 };
 
-// Opens a file whose format is known here. If `all` is false, only a PNG file that is plain. Returns nothing for others and for
-// those that are broken from the start, with the defect.
-std::unique_ptr<PictureReader> openedPicture(std::string_view bytes, const std::string& name, bool all, std::string& defect)
+// Opens a file of a format known here. Returns nothing for others and for those that are broken from the start, with the defect.
+std::unique_ptr<PictureReader> openedPicture(std::string_view bytes, const std::string& name, std::string& defect)
 {
 	if (looksPng(bytes))
 	{
 		auto png = std::make_unique<PngReader>(bytes);
-		if ((!all && !hasPlainChunks(bytes)) || !png->readHeader() || (!all && !png->is_plain))
+		if (!png->readHeader())
 		{
 			defect = png->defect();
 			return nullptr;
@@ -423,7 +370,7 @@ std::unique_ptr<PictureReader> openedPicture(std::string_view bytes, const std::
 		png->readTexts();
 		return png;
 	}
-	if (all && bytes.starts_with("\xFF\xD8\xFF"))
+	if (bytes.starts_with("\xFF\xD8\xFF"))
 	{
 		auto jpeg = std::make_unique<JpegReader>(bytes, name);
 		const bool begins = jpeg->readHeader();
@@ -432,8 +379,7 @@ std::unique_ptr<PictureReader> openedPicture(std::string_view bytes, const std::
 	}
 	const bool is_tga = lowered(name).ends_with(".tga");
 	auto raster = std::make_unique<RasterReader>(bytes);
-	const bool begins = all && (bytes.starts_with("BM") ? raster->readBmpHeader() : is_tga && raster->readTgaHeader());
-	return begins ? std::move(raster) : nullptr;
+	return (bytes.starts_with("BM") ? raster->readBmpHeader() : is_tga && raster->readTgaHeader()) ? std::move(raster) : nullptr;
 }
 
 // The number that the value at that place of a row stands for.
@@ -443,11 +389,11 @@ float valueAt(const std::vector<uint8_t>& row, std::size_t i, int bits)
 					  : static_cast<float>(row[i]) * (1.0F / 255.0F);
 }
 
-Decoded<Image> decoded(const std::string& bytes, const std::string& name, bool all)
+Decoded<Image> decoded(const std::string& bytes, const std::string& name)
 {
 	Decoded<Image> answer;
-	const std::unique_ptr<PictureReader> reader = openedPicture(bytes, name, all, answer.defect);
-	if (reader == nullptr || (!all && !arePlain(reader->texts)))
+	const std::unique_ptr<PictureReader> reader = openedPicture(bytes, name, answer.defect);
+	if (reader == nullptr)
 	{
 		return answer;
 	}
@@ -456,6 +402,7 @@ Decoded<Image> decoded(const std::string& bytes, const std::string& name, bool a
 	image.notes = std::move(reader->texts);
 	image.width_px = reader->width_px;
 	image.height_px = reader->height_px;
+	image.cropped = reader->cropped;
 	constexpr std::array<const char*, 4> kNames{"Y", "YA", "RGB", "RGBA"};
 	for (const char* letter = kNames[static_cast<std::size_t>(reader->channels - 1)]; *letter != '\0'; ++letter)
 	{
@@ -488,7 +435,7 @@ Decoded<AlphaImage> decodedAlpha(std::string_view bytes, const EncodedAlpha& pic
 		return alphaOfKtx2(bytes, picture, max_texels);
 	}
 	Decoded<AlphaImage> answer;
-	const std::unique_ptr<PictureReader> reader = openedPicture(bytes, picture.name, true, answer.defect);
+	const std::unique_ptr<PictureReader> reader = openedPicture(bytes, picture.name, answer.defect);
 	if (reader == nullptr)
 	{
 		return answer;

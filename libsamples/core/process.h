@@ -63,8 +63,7 @@ std::optional<std::string> pathOfWorker(const std::string& program);
 
 // The worker's side.
 
-// Call first: returns the streams that the command line names, and lets the process end with its parent, and only then. Nothing if
-// the parent is gone.
+// Call first: returns the streams that the command line names, or nothing if the parent is gone; the process ends with it.
 std::optional<WorkerStreams> takeStreams(const char* argument);
 
 // Limits this process to the memory and the processor time that it has now and so much more, never above the inherited limits; or

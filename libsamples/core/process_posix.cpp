@@ -51,8 +51,7 @@ ProcessMemory memoryOf(const std::string& process)
 	return memory;
 }
 
-// The run path of this program, or of the library that this code is in, which leads to the workers both in the build folder and
-// when installed.
+// The run path of this program or library, which leads to the workers both in the build folder and when installed.
 std::vector<std::string> libraryFolders()
 {
 	Dl_info here{};
@@ -117,8 +116,7 @@ public:
 	posix_spawnattr_t attributes{};
 };
 
-// Inherits the environment and, unless set, asks for huge heap pages: a large level then takes fewer page faults. (glibc 2.35 or
-// newer; others ignore the variable.)
+// Inherits the environment and, unless set, asks for huge heap pages (glibc 2.35 or newer), for fewer page faults.
 std::vector<char*> environment()
 {
 	static std::string pages = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";

@@ -73,8 +73,7 @@ struct Pipes
 	std::array<HANDLE, 2> ours{};
 };
 
-// Starts a program that inherits these two handles alone, without a console: Ctrl-C is for its parent. Its standard streams lead
-// nowhere.
+// Starts a program that inherits only these handles, without a console (Ctrl-C is for its parent) or standard streams.
 PROCESS_INFORMATION start(const std::wstring& path, std::array<HANDLE, 2>& handles)
 {
 	SIZE_T bytes = 0;

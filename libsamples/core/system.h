@@ -64,8 +64,7 @@ std::vector<std::string> takeCommandLine(int argc, char** argv);
 // Yields to another thread while waiting for the program's end.
 void waitForEnd();
 
-// Calls `handler` on termination signals, except those that the parent process set to be ignored. Broken pipes and file size limits
-// become write errors.
+// Calls `handler` on termination signals that the parent did not ignore. Broken pipes and size limits become write errors.
 void onEndingSignals(void (*handler)(int));
 
 // In that handler: ends the program with the signal's default action.

@@ -36,11 +36,6 @@ template <typename Json> std::string lineOf(const Json& value)
 	return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-template <typename Json> std::string fileOf(const Json& value)
-{
-	return value.dump(1, '\t', false, Json::error_handler_t::replace) + "\n";
-}
-
 } // namespace
 
 std::string jsonLine(const nlohmann::json& value)
@@ -53,14 +48,9 @@ std::string jsonLine(const nlohmann::ordered_json& value)
 	return lineOf(value);
 }
 
-std::string jsonFile(const nlohmann::json& value)
-{
-	return fileOf(value);
-}
-
 std::string jsonFile(const nlohmann::ordered_json& value)
 {
-	return fileOf(value);
+	return value.dump(1, '\t', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 nlohmann::json looseJson(std::string_view text)

@@ -20,6 +20,80 @@ namespace
 constexpr std::size_t kChunkBytes = std::size_t{1} << 16U;
 constexpr std::size_t kMaxTextBytes = std::size_t{1} << 20U;
 
+class Server
+{
+public:
+	Server(const WorkerStreams& streams, std::span<const WorkerFunction> functions) : m_streams(streams), m_functions(functions) {}
+
+	// Serves one request. Throws StreamEnded if there is none.
+	void serve()
+	{
+		ValueReader request(m_streams.from);
+		ValueWriter answer(m_streams.to);
+		const std::string name = request.text();
+		const auto head = request.value<RequestHead>();
+		const bool ours = limitThisProcess(head.limited, head.memory_bytes, head.processor_s);
+		try
+		{
+			run(name, request, answer);
+			request.finish();
+			answer.finish(ExitCode::ok, "");
+		}
+		catch (const Error& error)
+		{
+			request.finish();
+			answer.finish(error.code(), error.what());
+		}
+		catch (const std::bad_alloc&)
+		{
+			skip(request);
+			answer.finish(ExitCode::runtime, ours ? kTooLarge : "memory: found none left, expected a smaller task");
+			throw StreamEnded{}; // a new worker can start clean
+		}
+		catch (const std::system_error& error)
+		{
+			if (error.code() != std::errc::resource_unavailable_try_again) // no thread could be started
+			{
+				throw;
+			}
+			skip(request);
+			answer.finish(ExitCode::runtime, std::string("threads: ") + error.what());
+			throw StreamEnded{};
+		}
+	}
+
+private:
+	// Reads the rest of a request: closing a socket with unread data loses the answer.
+	static void skip(ValueReader& request)
+	{
+		std::array<char, 4096> rest;
+		try
+		{
+			while (!request.isFinished())
+			{
+				request.bytes(rest.data(), rest.size());
+			}
+		}
+		catch (const StreamEnded&)
+		{
+		}
+	}
+
+	void run(const std::string& name, ValueReader& request, ValueWriter& answer) const
+	{
+		const auto found =
+			std::find_if(m_functions.begin(), m_functions.end(), [&](const WorkerFunction& one) { return one.name == name; });
+		if (found == m_functions.end())
+		{
+			throw Error(ExitCode::runtime, name + ": found no such function in this worker, expected parts of nook of one build");
+		}
+		found->run(request, answer);
+	}
+
+	WorkerStreams m_streams;
+	std::span<const WorkerFunction> m_functions;
+};
+
 } // namespace
 
 // The stream consists of chunks: a size, then that many bytes. Size 0 ends it, followed by a code and a message.
@@ -150,85 +224,6 @@ void ValueReader::finish()
 	}
 	lastWords();
 }
-
-namespace
-{
-
-class Server
-{
-public:
-	Server(const WorkerStreams& streams, std::span<const WorkerFunction> functions) : m_streams(streams), m_functions(functions) {}
-
-	// Serves one request. Throws StreamEnded if there is none.
-	void serve()
-	{
-		ValueReader request(m_streams.from);
-		ValueWriter answer(m_streams.to);
-		const std::string name = request.text();
-		const auto head = request.value<RequestHead>();
-		const bool ours = limitThisProcess(head.limited, head.memory_bytes, head.processor_s);
-		try
-		{
-			run(name, request, answer);
-			request.finish();
-			answer.finish(ExitCode::ok, "");
-		}
-		catch (const Error& error)
-		{
-			request.finish();
-			answer.finish(error.code(), error.what());
-		}
-		catch (const std::bad_alloc&)
-		{
-			skip(request);
-			answer.finish(ExitCode::runtime, ours ? kTooLarge : "memory: found none left, expected a smaller task");
-			throw StreamEnded{}; // a new worker can start clean
-		}
-		catch (const std::system_error& error)
-		{
-			if (error.code() != std::errc::resource_unavailable_try_again) // no thread could be started
-			{
-				throw;
-			}
-			skip(request);
-			answer.finish(ExitCode::runtime, std::string("threads: ") + error.what());
-			throw StreamEnded{};
-		}
-	}
-
-private:
-	// Reads the rest of a request: closing a socket with unread data loses the answer.
-	static void skip(ValueReader& request)
-	{
-		std::array<char, 4096> rest;
-		try
-		{
-			while (!request.isFinished())
-			{
-				request.bytes(rest.data(), rest.size());
-			}
-		}
-		catch (const StreamEnded&)
-		{
-		}
-	}
-
-	void run(const std::string& name, ValueReader& request, ValueWriter& answer) const
-	{
-		const auto found =
-			std::find_if(m_functions.begin(), m_functions.end(), [&](const WorkerFunction& one) { return one.name == name; });
-		if (found == m_functions.end())
-		{
-			throw Error(ExitCode::runtime, name + ": found no such function in this worker, expected parts of nook of one build");
-		}
-		found->run(request, answer);
-	}
-
-	WorkerStreams m_streams;
-	std::span<const WorkerFunction> m_functions;
-};
-
-} // namespace
 
 int serveRequests(int argc, char** argv, std::span<const WorkerFunction> functions, const std::function<void()>& prepare)
 {

@@ -13,14 +13,11 @@ namespace nook
 {
 
 // ASCII letters in lower case; others stay.
-inline char lowerCase(char c)
-{
-	return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
 inline std::string lowered(std::string_view text)
 {
 	std::string lower(text);
-	std::transform(lower.begin(), lower.end(), lower.begin(), lowerCase);
+	std::transform(lower.begin(), lower.end(), lower.begin(),
+				   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
 	return lower;
 }
 

@@ -87,6 +87,21 @@ void visit(Archive& archive, DoneNote& note)
 	archive(note.inputs, note.hashes, note.units);
 }
 
+namespace fs = std::filesystem;
+
+constexpr std::string_view kValueMagic = "nook.value/1 ";
+
+// A value's first line: the format, and a checksum of the key and the bytes that follow.
+std::string headOf(const std::string& key, std::string_view value)
+{
+	ContentHash sum;
+	sum.add(key);
+	sum.add(value);
+	return std::string(kValueMagic) + sum.text() + "\n";
+}
+
+constexpr std::size_t kBlock = std::size_t{1} << 20U;
+
 } // namespace
 
 std::vector<int> dealUnits(std::span<const double> costs, std::vector<double>& loads)
@@ -243,26 +258,6 @@ void addInputs(const std::vector<std::string>& paths, const RunSettings& run)
 		run.units->addInputs(paths);
 	}
 }
-
-namespace
-{
-
-namespace fs = std::filesystem;
-
-constexpr std::string_view kValueMagic = "nook.value/1 ";
-
-// A value's first line: the format, and a checksum of the key and the bytes that follow.
-std::string headOf(const std::string& key, std::string_view value)
-{
-	ContentHash sum;
-	sum.add(key);
-	sum.add(value);
-	return std::string(kValueMagic) + sum.text() + "\n";
-}
-
-constexpr std::size_t kBlock = std::size_t{1} << 20U;
-
-} // namespace
 
 Store::Store(std::string folder, std::string version, bool must_keep)
 	: m_folder(std::move(folder)), m_version(std::move(version)), m_must_keep(must_keep)

@@ -47,8 +47,7 @@ public:
 		keep(key, bytesOf([&](Archive& archive) { archive(value); }));
 	}
 
-	// Loads the value, or computes it while other processes that need the same value wait for this one. Keeps it if compute()
-	// returns true.
+	// Loads the value, or computes it while other processes wait for it. Keeps it if compute() returns true.
 	void once(const std::string& key, const std::function<bool()>& compute, const Visitor& visitor);
 
 	// Values that this run has kept, and found.
@@ -115,8 +114,7 @@ public:
 		return m_store;
 	}
 
-	// The results of the following units depend on the bytes of these files too. Builtin levels are part of the program. Throws
-	// Error (file) if one cannot be read.
+	// Later results depend on the bytes of these files too, except for builtin levels. Throws Error (file) if one cannot be read.
 	void addInputs(const std::vector<std::string>& paths);
 
 	// Used by runStage(). Throws Error (file) in a share if a result cannot be kept.
@@ -141,8 +139,7 @@ private:
 	std::map<std::string, int> m_owners; // of groups
 };
 
-// Returns the results that a finished command has used, or nothing if it has not finished or its inputs have changed since. Paths
-// of inputs are resolved in `folder`.
+// Returns the number of results of a finished command whose inputs, resolved in `folder`, have not changed since, or nothing.
 std::optional<std::size_t> finishedUnits(Store& store, std::span<const std::string> identity, std::optional<WorkShare> share,
 										 const std::string& folder);
 

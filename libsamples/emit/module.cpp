@@ -102,12 +102,6 @@ std::string placeMacro(const std::string& name, int number, int vulkan_number)
 		   name + " " + std::to_string(number) + "\n#endif\n#endif\n";
 }
 
-// Does the module read tiles and the pictures of its passes through macros?
-bool hasMacros(const ModuleSettings& settings)
-{
-	return settings.textures != ModuleTextures::fixed || isHlsl(settings);
-}
-
 bool isSeparate(const ModuleSettings& settings)
 {
 	return settings.target == GlslTarget::vulkan && settings.textures == ModuleTextures::separate;
@@ -184,7 +178,7 @@ std::string madeNormalText(const Input& input)
 std::string readText(const ModuleSettings& settings, const std::string& declaration, const std::string& head,
 					 const std::string& call, const std::string& fetch)
 {
-	if (!hasMacros(settings))
+	if (settings.textures == ModuleTextures::fixed && !isHlsl(settings))
 	{
 		return declaration + head + "\n{\n\treturn " + fetch + ";\n}\n";
 	}
@@ -266,12 +260,7 @@ std::string headOf(const ModuleSettings& settings)
 				: "");
 }
 
-std::string versionLine(GlslTarget target)
-{
-	constexpr std::array<const char*, 5> lines{"#version 330 core\n", "#version 430 core\n", "#version 300 es\n", "#version 450\n",
-											   ""};
-	return lines[static_cast<std::size_t>(target)];
-}
+constexpr std::array kVersionLines{"#version 330 core\n", "#version 430 core\n", "#version 300 es\n", "#version 450\n", ""};
 
 // An array of constants. `space`: between the elements.
 std::string arrayText(const ModuleSettings& settings, const std::string& type, const std::string& name,
@@ -464,6 +453,108 @@ std::string mainText(const ModuleSettings& settings)
 	return text + "#else\n#error nook: NOOK_PASS: expected 0 to " + std::to_string(passes.size() - 1) + "\n#endif\n";
 }
 
+// A module in the kernels' subset of GLSL as HLSL. Declarations of resources already are HLSL, but for the names of types.
+
+using Matches = std::sregex_iterator;
+
+// Adds vector types, which are their constructors, and the names declared with them.
+void addVectors(const std::string& code, std::set<std::string>& vectors)
+{
+	static const std::regex declared(R"(\b([iu]?vec[234])\s+(\w+))");
+	for (Matches it(code.begin(), code.end(), declared), end; it != end; ++it)
+	{
+		vectors.insert({(*it)[1], (*it)[2]});
+	}
+}
+
+// GLSL's == and != of two vectors are one truth; HLSL's are one per component, and ?: would choose by each. `vectors`: names of
+// vectors, and of functions that return them. An operand is a name, or a call without further calls.
+std::string withWholeComparisons(const std::string& code, const std::set<std::string>& vectors)
+{
+	static const std::regex comparison(R"((\w+)(\([^()]*\))? (==|!=) (\w+)(\([^()]*\))?(?!\w*\.))");
+	std::string text;
+	std::size_t done = 0;
+	for (Matches it(code.begin(), code.end(), comparison), end; it != end; ++it)
+	{
+		const std::smatch& match = *it;
+		const auto at = static_cast<std::size_t>(match.position());
+		const bool member = at > 0 && code[at - 1] == '.';
+		if (!member && (vectors.contains(match[1]) || vectors.contains(match[4])))
+		{
+			text += code.substr(done, at - done) + (match[3] == "==" ? "all(" : "any(") + match.str() + ")";
+			done = at + match.str().size();
+		}
+	}
+	return text + code.substr(done);
+}
+
+// $1 to $4: the stages, corners and polygons, the clusters, the draw calls.
+constexpr const char* kVolumesHead = R"(//
+// Draws the static ambient occlusion volumes of a file that `nook volumes` wrote over the depth and normals of a frame: visibility of
+// static surfaces, 1 where open. Stages: $1.
+// Once: nook_volumes::Volumes::open (nook_volumes.h; volumes_file.js of the npm package nook-ao). Upload corners() and polygons() as
+// $2 nook_corners and nook_polygons.
+// Every frame: nook_volumes::Frame::set (nook_volumes_draw.h); its block is the uniform block NookVolumes. Frame::seen of every cluster
+// makes $3 nook_clusters.
+// Draw call of each cluster i with Frame::inSight:$4
+// States: depth test against the depth buffer of the frame, no depth writes; depth clamp; front faces counter-clockwise (clockwise where
+// Frame::mirrored). Clusters that do not contain the eye: cull back faces, depth test "less or equal". Clusters that do
+// (Frame::holdsEye): cull front faces, depth test "greater or equal"; reversed depth has the opposite tests. Without depth clamp set
+// NOOK_ANY_DEPTH for the vertex stage and draw without a depth test.
+// nook's page "Drawing occlusion volumes" says how NOOK_CHOOSE_FACES spares fragments, and NOOK_SPARSE draws one pixel of 9 or 25.
+// Together with a screen-space method, take min(this visibility, that one): then an occluder that both see counts once.
+)";
+constexpr const char* kMacros = R"(define one of these macros first, after your #version, for its main():
+//   NOOK_VERTEX (with NOOK_PRISMS for files of --layout prisms), NOOK_FRAGMENT: the volumes; one depth read per fragment
+//   NOOK_RESOLVE, NOOK_SPARSE: the picture; NOOK_SPARSE where one pixel of 9 or 25 was drawn, at most 51 depth reads)";
+constexpr const char* kCallsGl = R"(
+//   glVertexAttribI1i(0, i); // or NOOK_CLUSTER, defined as a uniform of yours, gl_DrawID, in Vulkan gl_InstanceIndex
+//   glDrawArrays(GL_TRIANGLES, 12 * first_corner, 12 * corner_count);
+// With prisms the attribute nook_point (location 1) is vertices(), four unsigned 16-bit integers, and the call
+//   glDrawElementsBaseVertex(GL_TRIANGLES, index_count, GL_UNSIGNED_SHORT, 2 * first_index, first_vertex);
+// All in one call: glMultiDrawArraysIndirect, where nook_cluster has divisor 1 and holds 0, 1, 2 ..., and i is the base instance.)";
+constexpr const char* kCallsHlsl = R"(
+//   DrawInstanced(12 * corner_count, 1, 0, i), where NOOK_CLUSTER is an attribute per instance of the numbers 0, 1, 2 ...
+// With prisms NOOK_POINT is vertices(), R16G16B16A16_UINT, and the call
+//   DrawIndexedInstanced(index_count, 1, first_index, first_vertex, i))";
+constexpr const char* kCallsWgsl = R"(
+//   draw(12 * corner_count, 1, 12 * first_corner, i)
+// With prisms the attribute 0 is vertices(), uint16x4, and the call
+//   drawIndexed(index_count, 1, first_index, first_vertex, i)
+// nook_faces is 0 unless faces are chosen. NOOK_ANY_DEPTH is the constant nook_any_depth.)";
+
+constexpr const char* kSums =
+	R"(// Target: R16F (or R32F; R8 would saturate at 1), cleared to 0; blending adds. The resolve stage reads it as nook_sums.
+)";
+constexpr const char* kBits =
+	R"(// Target: unsigned integers, R32UI, RG32UI or RGBA32UI for up to 32, 64 and 128 directions, a second RGBA32UI for more; cleared to 0;
+// no blending, but the logic operation OR (GL_COLOR_LOGIC_OP). The resolve stage reads them as nook_sums and nook_more_sums.
+// Once, before the first frame: draw a triangle over a texture RGBA32UI of 64 x 64 texels, 64 x 128 above 128 directions, with the
+// stage NOOK_HALF_SPACES. The fragment stage of the volumes reads it as nook_half_spaces.
+)";
+
+std::string volumesHead(const AovTextSettings& settings)
+{
+	const GlslTarget target = settings.target;
+	const bool wgsl = target == GlslTarget::wgsl;
+	const std::string buffers = target == GlslTarget::gl330   ? "buffer textures"
+								: target == GlslTarget::es300 ? "textures of any width, filled row by row,"
+															  : "";
+	const std::string stages =
+		wgsl ? "nook_vertex (nook_prism_vertex for files of\n// --layout prisms) and nook_fragment draw volumes, nook_triangle and "
+			   "nook_resolve or nook_sparse the picture"
+			 : kMacros;
+	const std::string once = buffers.empty() ? "storage buffers" : buffers + " RGBA16UI and RG32UI,";
+	const std::string frame = buffers.empty() ? "the storage buffer" : buffers + " RGBA32UI, four texels a cluster,";
+	const char* const calls = wgsl ? kCallsWgsl : target == GlslTarget::hlsl60 ? kCallsHlsl : kCallsGl;
+	std::string text = kVolumesHead;
+	for (const auto& [mark, by] : {std::pair{"\\$1", stages}, {"\\$2", once}, {"\\$3", frame}, {"\\$4", std::string(calls)}})
+	{
+		text = std::regex_replace(text, std::regex(mark), by);
+	}
+	return text + (settings.directions > 0 ? kBits : kSums);
+}
+
 } // namespace
 
 std::span<const std::string_view> glslTargets()
@@ -574,48 +665,9 @@ std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& contex
 							 "#ifndef NOOK_SKY\n#define NOOK_SKY 1e30\n#endif\n" + blockText(settings) +
 							 (writer.uses("nook_pass") ? passText(settings) : "") + withIntegers(settings, inputs + functions) +
 							 (whole ? mainText(settings) : "\n#endif // " + guard + "\n");
-	return (whole ? versionLine(settings.target) : "") + head + (isHlsl(settings) ? toHlsl(text) : text);
+	return (whole ? kVersionLines[static_cast<std::size_t>(settings.target)] : "") + head +
+		   (isHlsl(settings) ? toHlsl(text) : text);
 }
-
-// A module in the kernels' subset of GLSL as HLSL. Declarations of resources already are HLSL, but for the names of types.
-
-namespace
-{
-
-using Matches = std::sregex_iterator;
-
-// Adds vector types, which are their constructors, and the names declared with them.
-void addVectors(const std::string& code, std::set<std::string>& vectors)
-{
-	static const std::regex declared(R"(\b([iu]?vec[234])\s+(\w+))");
-	for (Matches it(code.begin(), code.end(), declared), end; it != end; ++it)
-	{
-		vectors.insert({(*it)[1], (*it)[2]});
-	}
-}
-
-// GLSL's == and != of two vectors are one truth; HLSL's are one per component, and ?: would choose by each. `vectors`: names of
-// vectors, and of functions that return them. An operand is a name, or a call without further calls.
-std::string withWholeComparisons(const std::string& code, const std::set<std::string>& vectors)
-{
-	static const std::regex comparison(R"((\w+)(\([^()]*\))? (==|!=) (\w+)(\([^()]*\))?(?!\w*\.))");
-	std::string text;
-	std::size_t done = 0;
-	for (Matches it(code.begin(), code.end(), comparison), end; it != end; ++it)
-	{
-		const std::smatch& match = *it;
-		const auto at = static_cast<std::size_t>(match.position());
-		const bool member = at > 0 && code[at - 1] == '.';
-		if (!member && (vectors.contains(match[1]) || vectors.contains(match[4])))
-		{
-			text += code.substr(done, at - done) + (match[3] == "==" ? "all(" : "any(") + match.str() + ")";
-			done = at + match.str().size();
-		}
-	}
-	return text + code.substr(done);
-}
-
-} // namespace
 
 std::string toHlsl(const std::string& module)
 {
@@ -653,78 +705,6 @@ std::string toHlsl(const std::string& module)
 	}
 	return text;
 }
-
-namespace
-{
-
-// $1 to $4: the stages, corners and polygons, the clusters, the draw calls.
-constexpr const char* kVolumesHead = R"(//
-// Draws the static ambient occlusion volumes of a file that `nook volumes` wrote over the depth and normals of a frame: visibility of
-// static surfaces, 1 where open. Stages: $1.
-// Once: nook_volumes::Volumes::open (nook_volumes.h; volumes_file.js of the npm package nook-ao). Upload corners() and polygons() as
-// $2 nook_corners and nook_polygons.
-// Every frame: nook_volumes::Frame::set (nook_volumes_draw.h); its block is the uniform block NookVolumes. Frame::seen of every cluster
-// makes $3 nook_clusters.
-// Draw call of each cluster i with Frame::inSight:$4
-// States: depth test against the depth buffer of the frame, no depth writes; depth clamp; front faces counter-clockwise (clockwise where
-// Frame::mirrored). Clusters that do not contain the eye: cull back faces, depth test "less or equal". Clusters that do
-// (Frame::holdsEye): cull front faces, depth test "greater or equal"; reversed depth has the opposite tests. Without depth clamp set
-// NOOK_ANY_DEPTH for the vertex stage and draw without a depth test.
-// nook's page "Drawing occlusion volumes" says how NOOK_CHOOSE_FACES spares fragments, and NOOK_SPARSE draws one pixel of 9 or 25.
-// Together with a screen-space method, take min(this visibility, that one): then an occluder that both see counts once.
-)";
-constexpr const char* kMacros = R"(define one of these macros first, after your #version, for its main():
-//   NOOK_VERTEX (with NOOK_PRISMS for files of --layout prisms), NOOK_FRAGMENT: the volumes; one depth read per fragment
-//   NOOK_RESOLVE, NOOK_SPARSE: the picture; NOOK_SPARSE where one pixel of 9 or 25 was drawn, at most 51 depth reads)";
-constexpr const char* kCallsGl = R"(
-//   glVertexAttribI1i(0, i); // or NOOK_CLUSTER, defined as a uniform of yours, gl_DrawID, in Vulkan gl_InstanceIndex
-//   glDrawArrays(GL_TRIANGLES, 12 * first_corner, 12 * corner_count);
-// With prisms the attribute nook_point (location 1) is vertices(), four unsigned 16-bit integers, and the call
-//   glDrawElementsBaseVertex(GL_TRIANGLES, index_count, GL_UNSIGNED_SHORT, 2 * first_index, first_vertex);
-// All in one call: glMultiDrawArraysIndirect, where nook_cluster has divisor 1 and holds 0, 1, 2 ..., and i is the base instance.)";
-constexpr const char* kCallsHlsl = R"(
-//   DrawInstanced(12 * corner_count, 1, 0, i), where NOOK_CLUSTER is an attribute per instance of the numbers 0, 1, 2 ...
-// With prisms NOOK_POINT is vertices(), R16G16B16A16_UINT, and the call
-//   DrawIndexedInstanced(index_count, 1, first_index, first_vertex, i))";
-constexpr const char* kCallsWgsl = R"(
-//   draw(12 * corner_count, 1, 12 * first_corner, i)
-// With prisms the attribute 0 is vertices(), uint16x4, and the call
-//   drawIndexed(index_count, 1, first_index, first_vertex, i)
-// nook_faces is 0 unless faces are chosen. NOOK_ANY_DEPTH is the constant nook_any_depth.)";
-
-constexpr const char* kSums =
-	R"(// Target: R16F (or R32F; R8 would saturate at 1), cleared to 0; blending adds. The resolve stage reads it as nook_sums.
-)";
-constexpr const char* kBits =
-	R"(// Target: unsigned integers, R32UI, RG32UI or RGBA32UI for up to 32, 64 and 128 directions, a second RGBA32UI for more; cleared to 0;
-// no blending, but the logic operation OR (GL_COLOR_LOGIC_OP). The resolve stage reads them as nook_sums and nook_more_sums.
-// Once, before the first frame: draw a triangle over a texture RGBA32UI of 64 x 64 texels, 64 x 128 above 128 directions, with the
-// stage NOOK_HALF_SPACES. The fragment stage of the volumes reads it as nook_half_spaces.
-)";
-
-std::string volumesHead(const AovTextSettings& settings)
-{
-	const GlslTarget target = settings.target;
-	const bool wgsl = target == GlslTarget::wgsl;
-	const std::string buffers = target == GlslTarget::gl330   ? "buffer textures"
-								: target == GlslTarget::es300 ? "textures of any width, filled row by row,"
-															  : "";
-	const std::string stages =
-		wgsl ? "nook_vertex (nook_prism_vertex for files of\n// --layout prisms) and nook_fragment draw volumes, nook_triangle and "
-			   "nook_resolve or nook_sparse the picture"
-			 : kMacros;
-	const std::string once = buffers.empty() ? "storage buffers" : buffers + " RGBA16UI and RG32UI,";
-	const std::string frame = buffers.empty() ? "the storage buffer" : buffers + " RGBA32UI, four texels a cluster,";
-	const char* const calls = wgsl ? kCallsWgsl : target == GlslTarget::hlsl60 ? kCallsHlsl : kCallsGl;
-	std::string text = kVolumesHead;
-	for (const auto& [mark, by] : {std::pair{"\\$1", stages}, {"\\$2", once}, {"\\$3", frame}, {"\\$4", std::string(calls)}})
-	{
-		text = std::regex_replace(text, std::regex(mark), by);
-	}
-	return text + (settings.directions > 0 ? kBits : kSums);
-}
-
-} // namespace
 
 std::string volumesGlsl(const AovTextSettings& settings, const EmitContext& context)
 {

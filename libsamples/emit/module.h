@@ -96,8 +96,7 @@ std::string passesJson(const ShadeFrame& frame, const ShadeSamples& samples, con
 // Whether normals are asked for at all.
 bool readsNormals(const ModuleSettings& settings);
 
-// Fills the method's variants; returns the command that makes the file. `count`: only the first samples. Throws Error (file;
-// invalid_input).
+// Fills the method's variants, or their first `count` samples; returns the file's command. Throws Error (file; invalid_input).
 std::string readSamples(const std::string& path, std::optional<std::size_t> count, const ShadeSettings& shade,
 						ModuleMethod& method);
 

@@ -166,12 +166,6 @@ std::string plural(int count, const std::string& word)
 	return std::to_string(count) + " " + word + (count == 1 ? "" : "s");
 }
 
-// "; at most 10 depth reads", or nothing.
-std::string readsText(int reads)
-{
-	return reads > 0 ? "; at most " + plural(reads, "depth read") + " per texel" : "";
-}
-
 std::string momentsText()
 {
 	return line("nookMoments(texel): levels 0 to 5 of nook_levels, RGBA32F; level 0 has half the size of the depth texture, "
@@ -216,7 +210,8 @@ std::string passLines(const ModuleSettings& settings, const ModuleMethod& method
 	for (const ShadePass& pass : planFor(settings, method).passes)
 	{
 		const std::string call = moduleCallOf(pass);
-		const std::string reads = readsText(depthReadsOf(settings, method, pass));
+		const int depths = depthReadsOf(settings, method, pass);
+		const std::string reads = depths > 0 ? "; at most " + plural(depths, "depth read") + " per texel" : "";
 		const std::string_view kernel = pass.kernel.call;
 		if (pass.of_pixel && call == row.open_kernel.call)
 		{
@@ -323,6 +318,107 @@ std::string countsText(const ModuleSettings& settings, const ModuleMethod& metho
 std::string presetsText(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	return joinedText(presetsOf(settings, method), ", ", [](const auto& preset) { return preset.first + " = " + preset.second; });
+}
+
+// The passes, pictures and uniform block of one picture as JSON, for programs that draw emitted modules.
+
+using PassesJson = nlohmann::ordered_json;
+
+constexpr std::array kPictureFormats{"scalar", "quad", "counts"};
+constexpr std::array kSlotNames{"nook_cells", "nook_packed", "nook_levels", "nook_tables", "nook_range"};
+
+// Column = variant, row = sample, as modules read their tiles.
+PassesJson tileJson(const ShadeSamples& samples)
+{
+	const auto count = static_cast<std::size_t>(samples.count);
+	const std::size_t variants = samples.samples.size() / count;
+	const std::vector<glm::vec4> texels =
+		listOf(samples.samples.size(), [&](std::size_t i) { return samples.samples[i % variants * count + i / variants]; });
+	return {{"width", variants},
+			{"height", count},
+			{"texels", base64Of({reinterpret_cast<const uint8_t*>(texels.data()), texels.size() * sizeof(glm::vec4)})}};
+}
+
+PassesJson passJson(const ShadePass& pass)
+{
+	const PassesJson reads = mapped(pass.reads,
+									[](const ShadeRead& read) -> PassesJson {
+										return {kSlotNames[static_cast<std::size_t>(read.slot)], read.picture};
+									});
+	const glm::ivec4 numbers = modulePassOf(pass.block, pass.kernel.call);
+	return {{"name", pass.kernel.name},
+			{"call", moduleCallOf(pass)},
+			{"picture", pass.picture},
+			{"level", pass.level},
+			{"layer", pass.layer},
+			{"reads", reads},
+			{"numbers", {numbers.x, numbers.y, numbers.z, numbers.w}}};
+}
+
+// The first `count` samples. Throws Error (invalid_input) where there are fewer, or where they were not made for it.
+void shorten(PatternFile& file, std::size_t count, const std::string& path)
+{
+	Pattern& pattern = file.pattern;
+	if (count > pattern.count())
+	{
+		refuseInput(path + ": --counts", std::to_string(pattern.count()) + " samples", std::to_string(count) + " or more");
+	}
+	if (count == pattern.count())
+	{
+		return;
+	}
+	if (!file.recipe || file.recipe->order != Order::progressive)
+	{
+		refuseInput(path + ": recipe", "a pattern whose first samples are none", "one made with --order progressive");
+	}
+	pattern.points.resize(count);
+	pattern.powers.clear();
+	pattern.weights = exactCells(pattern.domain, pattern.points, {}).integrals;
+}
+
+// The first `count` samples of each variant of a tile. Their weights stay what they were made for, but for their sum.
+void shorten(const TileFile& file, std::size_t count, const std::string& path, std::vector<Pattern>& variants)
+{
+	if (count > variants.front().count())
+	{
+		refuseInput(path + ": --counts", std::to_string(variants.front().count()) + " samples", std::to_string(count) + " or more");
+	}
+	if (count < variants.front().count() && !(file.recipe && file.recipe->progressive))
+	{
+		throw Error(ExitCode::invalid_input, path + ": --counts: found a tile of " + std::to_string(variants.front().count()) +
+												 " samples, expected all of them, or one made with --progressive");
+	}
+	for (Pattern& variant : variants)
+	{
+		if (count == variant.count())
+		{
+			return;
+		}
+		variant.points.resize(count);
+		variant.weights.resize(count);
+		const double sum = sumOver(variant.weights);
+		if (!(sum > 0.0))
+		{
+			refuseInput(path + ": --counts", "a variant whose first " + std::to_string(count) + " samples have no weight", "some");
+		}
+		for (double& w : variant.weights)
+		{
+			w /= sum;
+		}
+	}
+}
+
+// Variants in a window: those of the tile, or of the method's own samples.
+std::size_t windowOf(const ModuleSettings& settings, const ModuleMethod& method)
+{
+	if (!method.variants.empty())
+	{
+		return method.variants.size() / static_cast<std::size_t>(layersOf(method));
+	}
+	ShadeSettings shade = method.shade.value_or(settings.shade);
+	shade.method = method.method;
+	const auto side = static_cast<std::size_t>(ownSamples(shade).size);
+	return side * side;
 }
 
 } // namespace
@@ -512,52 +608,6 @@ std::string introductionOf(const ModuleSettings& settings)
 	return text;
 }
 
-// The passes, pictures and uniform block of one picture as JSON, for programs that draw emitted modules.
-
-namespace
-{
-
-using PassesJson = nlohmann::ordered_json;
-
-constexpr std::array kPictureFormats{"scalar", "quad", "counts"};
-constexpr std::array kSlotNames{"nook_cells", "nook_packed", "nook_levels", "nook_tables", "nook_range"};
-
-std::string base64OfBytes(const void* values, std::size_t size)
-{
-	std::vector<uint8_t> bytes(size);
-	std::memcpy(bytes.data(), values, size);
-	return base64Of(bytes);
-}
-
-// Column = variant, row = sample, as modules read their tiles.
-PassesJson tileJson(const ShadeSamples& samples)
-{
-	const auto count = static_cast<std::size_t>(samples.count);
-	const std::size_t variants = samples.samples.size() / count;
-	const std::vector<glm::vec4> texels =
-		listOf(samples.samples.size(), [&](std::size_t i) { return samples.samples[i % variants * count + i / variants]; });
-	return {{"width", variants}, {"height", count}, {"texels", base64OfBytes(texels.data(), texels.size() * sizeof(glm::vec4))}};
-}
-
-PassesJson passJson(const ShadePass& pass)
-{
-	PassesJson reads = PassesJson::array();
-	for (const ShadeRead& read : pass.reads)
-	{
-		reads.push_back({kSlotNames[static_cast<std::size_t>(read.slot)], read.picture});
-	}
-	const glm::ivec4 numbers = modulePassOf(pass.block, pass.kernel.call);
-	return {{"name", pass.kernel.name},
-			{"call", moduleCallOf(pass)},
-			{"picture", pass.picture},
-			{"level", pass.level},
-			{"layer", pass.layer},
-			{"reads", std::move(reads)},
-			{"numbers", {numbers.x, numbers.y, numbers.z, numbers.w}}};
-}
-
-} // namespace
-
 std::string passesJson(const ShadeFrame& frame, const ShadeSamples& samples, const ShadeSettings& settings,
 					   std::string_view version)
 {
@@ -591,77 +641,6 @@ std::string passesJson(const ShadeFrame& frame, const ShadeSamples& samples, con
 	json["passes"] = std::move(passes);
 	return jsonLine(json) + "\n";
 }
-
-namespace
-{
-
-// The first `count` samples. Throws Error (invalid_input) where there are fewer, or where they were not made for it.
-void shorten(PatternFile& file, std::size_t count, const std::string& path)
-{
-	Pattern& pattern = file.pattern;
-	if (count > pattern.count())
-	{
-		refuseInput(path + ": --counts", std::to_string(pattern.count()) + " samples", std::to_string(count) + " or more");
-	}
-	if (count == pattern.count())
-	{
-		return;
-	}
-	if (!file.recipe || file.recipe->order != Order::progressive)
-	{
-		refuseInput(path + ": recipe", "a pattern whose first samples are none", "one made with --order progressive");
-	}
-	pattern.points.resize(count);
-	pattern.powers.clear();
-	pattern.weights = exactCells(pattern.domain, pattern.points, {}).integrals;
-}
-
-// The first `count` samples of each variant of a tile. Their weights stay what they were made for, but for their sum.
-void shorten(const TileFile& file, std::size_t count, const std::string& path, std::vector<Pattern>& variants)
-{
-	if (count > variants.front().count())
-	{
-		refuseInput(path + ": --counts", std::to_string(variants.front().count()) + " samples", std::to_string(count) + " or more");
-	}
-	if (count < variants.front().count() && !(file.recipe && file.recipe->progressive))
-	{
-		throw Error(ExitCode::invalid_input, path + ": --counts: found a tile of " + std::to_string(variants.front().count()) +
-												 " samples, expected all of them, or one made with --progressive");
-	}
-	for (Pattern& variant : variants)
-	{
-		if (count == variant.count())
-		{
-			return;
-		}
-		variant.points.resize(count);
-		variant.weights.resize(count);
-		const double sum = sumOver(variant.weights);
-		if (!(sum > 0.0))
-		{
-			refuseInput(path + ": --counts", "a variant whose first " + std::to_string(count) + " samples have no weight", "some");
-		}
-		for (double& w : variant.weights)
-		{
-			w /= sum;
-		}
-	}
-}
-
-// Variants in a window: those of the tile, or of the method's own samples.
-std::size_t windowOf(const ModuleSettings& settings, const ModuleMethod& method)
-{
-	if (!method.variants.empty())
-	{
-		return method.variants.size() / static_cast<std::size_t>(layersOf(method));
-	}
-	ShadeSettings shade = method.shade.value_or(settings.shade);
-	shade.method = method.method;
-	const auto side = static_cast<std::size_t>(ownSamples(shade).size);
-	return side * side;
-}
-
-} // namespace
 
 std::string readSamples(const std::string& path, std::optional<std::size_t> count, const ShadeSettings& shade, ModuleMethod& method)
 {

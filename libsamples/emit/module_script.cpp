@@ -3,6 +3,7 @@
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "core/text.h"
 #include "emit/module_parts.h"
 #include "methods/assets.h"
@@ -139,17 +140,10 @@ Field fieldOf(const std::string& line)
 	{
 		throw Error(ExitCode::runtime, "nook_block.h: found '" + line + "', expected a member with a default");
 	}
-	std::string value = withoutHex(match[4].matched ? std::string(match[4]) : "0");
 	const int count = match[3].matched ? std::stoi(match[3]) : 0;
-	if (count > 0)
-	{
-		value = "0";
-		for (int i = 1; i < count; ++i)
-		{
-			value += ", 0";
-		}
-		value = "[" + value + "]";
-	}
+	const std::vector<std::string> zeros(static_cast<std::size_t>(count), "0");
+	const std::string value =
+		count > 0 ? "[" + joinedText(zeros, ", ") + "]" : withoutHex(match[4].matched ? std::string(match[4]) : "0");
 	return {match[1] == "int32_t" ? "int" : std::string(match[1]), match[2], value, match[5], count};
 }
 
@@ -271,11 +265,6 @@ Translation translated(std::string_view header, Tongue tongue)
 	return text;
 }
 
-std::string scriptTypeOf(const Field& field)
-{
-	return field.type == "bool" ? "boolean" : "number";
-}
-
 // The settings: their types for editors, their defaults, and which are integers.
 std::string defaultsText(const std::vector<Field>& settings)
 {
@@ -284,8 +273,8 @@ std::string defaultsText(const std::vector<Field>& settings)
 	std::string whole;
 	for (const Field& one : settings)
 	{
-		types += " * @property {" + scriptTypeOf(one) + "} [" + one.name + "=" + one.value + "]" +
-				 (one.meaning.empty() ? "" : " " + one.meaning) + "\n";
+		types += " * @property {" + (one.type == "bool" ? "boolean" : std::string("number")) + "} [" + one.name + "=" + one.value +
+				 "]" + (one.meaning.empty() ? "" : " " + one.meaning) + "\n";
 		defaults += "\t" + one.name + ": " + one.value + ",\n";
 		whole += one.type == "int" ? (whole.empty() ? "'" : ", '") + one.name + "'" : "";
 	}
@@ -345,12 +334,13 @@ std::string blockMembersText(const ModuleSettings& settings)
 	std::string text =
 		"\n/** Members of the block in the order in which the GLSL declares them; offsets in bytes. */\nexport const members = [\n";
 	const PlacedBlock block = placedBlock(settings);
-	for (const PlacedMember& member : block.members)
+	const auto lineOf = [](const PlacedMember& member)
 	{
-		text += "\t{ name: '" + member.name + "', type: '" + member.type + "', offset: " + std::to_string(member.offset) +
-				" }, // " + member.meaning + "\n";
-	}
-	return text + "];\n\n/** Bytes of the block. */\nexport const blockBytes = " + std::to_string(block.bytes) + ";\n";
+		return "\t{ name: '" + member.name + "', type: '" + member.type + "', offset: " + std::to_string(member.offset) +
+			   " }, // " + member.meaning + "\n";
+	};
+	return text + joinedText(block.members, "", lineOf) +
+		   "];\n\n/** Bytes of the block. */\nexport const blockBytes = " + std::to_string(block.bytes) + ";\n";
 }
 
 constexpr const char* kFill = R"(
@@ -401,14 +391,18 @@ std::string exportedName(const MethodRow& row)
 	return name;
 }
 
+// The values that a method's settings are preset to, one per line.
+std::string presetLines(const ModuleSettings& settings, const ModuleMethod& method, const char* before, const char* between)
+{
+	return joinedText(presetsOf(settings, method), "",
+					  [&](const auto& preset) { return before + preset.first + between + preset.second + ",\n"; });
+}
+
 std::string reachText(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	std::string text = "\t/**\n\t * " + settingsMeaning(method) +
 					   "\n\t * @param {number} reach\n\t * @returns {Settings}\n\t */\n\tsettings(reach) {\n\t\treturn {\n";
-	for (const auto& [name, value] : presetsOf(settings, method))
-	{
-		text += "\t\t\t" + name + ": " + value + ",\n";
-	}
+	text += presetLines(settings, method, "\t\t\t", ": ");
 	return text + "\t\t};\n\t},\n";
 }
 
@@ -461,33 +455,6 @@ std::string withoutLineEnds(std::string text)
 	}
 	return text;
 }
-
-} // namespace
-
-std::string moduleScript(const ModuleSettings& settings, const EmitContext& context, std::string_view glsl)
-{
-	Translation script = translated(assets::nook_block_h, javascript);
-	const std::vector<Field>& fields = settingsOf(script, settings);
-	std::string text = commentBlock(notesOf(context, {}), "// ") +
-					   "//\n// Fills the uniform block of a GLSL module that nook emitted, and holds its samples: ECMAScript 2022, "
-					   "no dependencies.\n" +
-					   defaultsText(fields) + blockMembersText(settings) + script.functions + kFill;
-	for (const ModuleMethod& method : settings.methods)
-	{
-		const MethodRow& row = rowOf(method.method);
-		const std::string parts = reachText(settings, method) + (fromTexture(settings, method) ? texelsText(method) : "");
-		text += "\n/** " + std::string(row.what) + " */\nexport const " + exportedName(row) + " = {\n" + parts + "};\n";
-	}
-	const bool wgsl = settings.target == GlslTarget::wgsl;
-	const std::string module =
-		wgsl ? "\n/** The WGSL module: put the code that calls it behind it. */\nexport const wgsl = "
-			 : "\n/** The GLSL module: put your #version before it, and the code that calls it behind it. */\nexport const glsl = ";
-	text += glsl.empty() ? "" : module + templateOf(glsl) + ";\n";
-	return withoutLineEnds(text);
-}
-
-namespace
-{
 
 constexpr const char* kSharpFill = R"(
 	static bool IsFinite(double value)
@@ -545,17 +512,34 @@ def fill(projection, **settings):
 	return bytes(data)
 )";
 
-std::string indented(const std::string& text)
-{
-	return std::regex_replace(text, std::regex("\n(?=[^\n])"), "\n\t");
-}
-
 std::string pythonValue(const std::string& value)
 {
 	return value == "true" ? "True" : value == "false" ? "False" : value;
 }
 
 } // namespace
+
+std::string moduleScript(const ModuleSettings& settings, const EmitContext& context, std::string_view glsl)
+{
+	Translation script = translated(assets::nook_block_h, javascript);
+	const std::vector<Field>& fields = settingsOf(script, settings);
+	std::string text = commentBlock(notesOf(context, {}), "// ") +
+					   "//\n// Fills the uniform block of a GLSL module that nook emitted, and holds its samples: ECMAScript 2022, "
+					   "no dependencies.\n" +
+					   defaultsText(fields) + blockMembersText(settings) + script.functions + kFill;
+	for (const ModuleMethod& method : settings.methods)
+	{
+		const MethodRow& row = rowOf(method.method);
+		const std::string parts = reachText(settings, method) + (fromTexture(settings, method) ? texelsText(method) : "");
+		text += "\n/** " + std::string(row.what) + " */\nexport const " + exportedName(row) + " = {\n" + parts + "};\n";
+	}
+	const bool wgsl = settings.target == GlslTarget::wgsl;
+	const std::string module =
+		wgsl ? "\n/** The WGSL module: put the code that calls it behind it. */\nexport const wgsl = "
+			 : "\n/** The GLSL module: put your #version before it, and the code that calls it behind it. */\nexport const glsl = ";
+	text += glsl.empty() ? "" : module + templateOf(glsl) + ";\n";
+	return withoutLineEnds(text);
+}
 
 std::string moduleSharp(const ModuleSettings& settings, const EmitContext& context)
 {
@@ -591,16 +575,13 @@ std::string moduleSharp(const ModuleSettings& settings, const EmitContext& conte
 		}
 		text += std::string("\t\tpublic ") + (member.isInteger() ? "int " : "float ") + names + "; // " + member.meaning + "\n";
 	}
-	text += "\t}\n" + indented(code.functions) + kSharpFill + filled + "\t\t};\n\t}\n";
+	text += "\t}\n" + std::regex_replace(code.functions, std::regex("\n(?=[^\n])"), "\n\t") + kSharpFill + filled + "\t\t};\n\t}\n";
 	for (const ModuleMethod& method : settings.methods)
 	{
 		const std::string stem = stemOf(rowOf(method.method));
 		text += "\n\t// " + settingsMeaning(method) + "\n\tpublic static nook_settings " + stem +
 				"_settings(double reach)\n\t{\n\t\treturn new nook_settings\n\t\t{\n";
-		for (const auto& [name, value] : presetsOf(settings, method))
-		{
-			text += "\t\t\t" + name + " = " + value + ",\n";
-		}
+		text += presetLines(settings, method, "\t\t\t", " = ");
 		text += "\t\t};\n\t}\n";
 		if (fromTexture(settings, method))
 		{
@@ -664,11 +645,11 @@ std::string moduleJson(const ModuleSettings& settings, const EmitContext& contex
 {
 	using Json = nlohmann::ordered_json;
 	const PlacedBlock block = placedBlock(settings);
-	Json members = Json::array();
-	for (const PlacedMember& member : block.members)
-	{
-		members.push_back({{"name", member.name}, {"type", member.type}, {"offset", member.offset}, {"meaning", member.meaning}});
-	}
+	Json members =
+		mapped(block.members,
+			   [](const PlacedMember& member) -> Json {
+				   return {{"name", member.name}, {"type", member.type}, {"offset", member.offset}, {"meaning", member.meaning}};
+			   });
 	Json methods = Json::array();
 	for (const ModuleMethod& method : settings.methods)
 	{

@@ -102,12 +102,10 @@ std::vector<PlanFile> planFiles(const Plan& plan);
 inline constexpr const char* kPlanFile = "plan.json";
 Plan readPlan(const std::string& text, const std::string& path);
 
-// Whether each job is done: its outputs exist, and the plan's store holds its results of the inputs as they are now. `folder`: the
-// plan's.
+// Whether each job is done: its outputs exist, and the store in the plan's `folder` holds its results of the present inputs.
 std::vector<char> doneJobs(const Plan& plan, const std::string& folder);
 
-// The files that a level's file names and that exist: buffers and pictures of a .gltf; the .mtl files of an .obj and their
-// pictures.
+// The existing files that a level's file names: buffers and pictures of a .gltf; .mtl files of an .obj and their pictures.
 std::vector<std::string> filesNextTo(const std::string& path);
 
 // Without "./", "a/../" and doubled slashes: one text for one name.
@@ -142,8 +140,7 @@ struct WorkFacts
 
 JobNeeds guessWork(const WorkFacts& facts, int threads);
 
-// Processor time of so many jobs that share out a command, each of which takes `needs`, over that of one job; 1 where that is
-// unknown.
+// Processor time of so many jobs that share a command and each take `needs`, over that of one job; 1 where that is unknown.
 double overheadOf(const JobNeeds& needs, std::size_t jobs);
 
 // The most jobs that stay below this overhead; more do more of what each does by itself than they save.

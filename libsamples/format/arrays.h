@@ -25,8 +25,7 @@ const char* columnsOf(Domain domain);
 std::vector<Sample> transformsOf(const PatternTile& tile);
 const char* transformColumnsOf(Domain domain);
 
-// The formula for a pixel's variant in a tile, "(y % 4) * 4 + x % 4" plus the frame's offset. side: the 4 in it, a number or a
-// name.
+// The formula for a pixel's variant, "(y % 4) * 4 + x % 4" plus the frame's offset. side: the 4 in it, a number or a name.
 std::string variantText(const PatternTile& tile, const std::string& side);
 
 struct SourceConstant

@@ -50,27 +50,18 @@ std::string sourceBytes(std::string_view format, const Source& source, std::span
 
 std::string joined(const Sample& sample, const char* separator, const char* suffix)
 {
-	std::string text;
-	for (const float value : sample)
-	{
-		text += text.empty() ? "" : separator;
-		text += floatText(value) + suffix;
-	}
-	return text;
+	return joinedText(sample, separator, [suffix](float value) { return floatText(value) + suffix; });
 }
 
 std::string constantsText(const Source& source)
 {
-	std::string text;
-	for (const SourceConstant& constant : source.constants)
-	{
-		text += "#define " + constant.name + " " + std::to_string(constant.value) + " // " + constant.comment + "\n";
-	}
-	return text;
+	return joinedText(
+		source.constants, "",
+		[](const SourceConstant& constant)
+		{ return "#define " + constant.name + " " + std::to_string(constant.value) + " // " + constant.comment + "\n"; });
 }
 
-// Language syntax: each array is its comment, `open`, the rows wrapped in `before` and `after` and separated by commas, then
-// `close`.
+// Syntax of a language: how it begins and ends a row, a number's suffix, and how it ends an array.
 struct Shape
 {
 	std::string before;
@@ -85,12 +76,11 @@ template <class Opening> std::string arraysText(const Source& source, const Shap
 	for (const SourceArray& array : source.arrays)
 	{
 		text += "\n// " + array.comment + "\n" + opening(array) + "\n";
-		for (std::size_t i = 0; i < array.rows.size(); ++i)
+		const auto rowOf = [&shape](const Sample& row)
 		{
-			text += "\t" + shape.before + joined(array.rows[i], ", ", shape.suffix) + shape.after +
-					(i + 1 < array.rows.size() ? ",\n" : "\n");
-		}
-		text += shape.close + "\n";
+			return "\t" + shape.before + joined(row, ", ", shape.suffix) + shape.after;
+		};
+		text += joinedText(array.rows, ",\n", rowOf) + "\n" + shape.close + "\n";
 	}
 	return text;
 }

@@ -19,8 +19,7 @@ std::span<const std::string_view> tileFormats();    // .json .h .glsl .hlsl .csv
 // Throws Error (usage) for any other extension, so that all paths can be checked before any work.
 std::string_view formatOf(const std::string& path, std::span<const std::string_view> formats);
 
-// The file's bytes; deterministic. pattern.weights are required; recipe may be null (unknown origin). Throws Error (usage) if
-// context.name is not a C identifier.
+// Deterministic. Requires pattern.weights; recipe may be null. Throws Error (usage) if context.name is not a C identifier.
 std::string patternBytes(std::string_view format, const Pattern& pattern, const Recipe* recipe, const Quality& quality,
 						 const EmitContext& context);
 

@@ -132,221 +132,8 @@ std::vector<double> readNumbers(const JsonValue& list, std::size_t count)
 	{
 		list.expected("an array of " + std::to_string(count) + ", one a point");
 	}
-	std::vector<double> numbers(count);
-	for (std::size_t i = 0; i < count; ++i)
-	{
-		numbers[i] = list.at(i).number();
-	}
-	return numbers;
+	return listOf(count, [&list](std::size_t i) { return list.at(i).number(); });
 }
-
-} // namespace
-
-std::string patternJson(const Pattern& pattern, const Recipe* recipe, const Quality& quality, const EmitContext& context)
-{
-	std::string text = "{\n" + jsonHead(kPatternSchema, context) + "\t\"quality\": " + measuresJson(measuresOf(quality)) + ",\n";
-	if (recipe != nullptr)
-	{
-		text += "\t\"recipe\": " + recipeJson(*recipe) + ",\n";
-	}
-	text += "\t\"domain\": " + jsonText(nameOf(pattern.domain)) + ",\n\t\"count\": " + std::to_string(pattern.count()) + ",\n";
-	return text + samplesJson(pattern, "\t") + "\n}\n";
-}
-
-PatternFile parsePatternJson(const std::string& text, const std::string& path)
-{
-	const nlohmann::json document = parseJson(text, path);
-	const JsonValue root{&document, &path, ""};
-	root.requireObject();
-	const bool ours = root.has("schema");
-	if (ours)
-	{
-		requireSchema(root, kPatternSchema);
-	}
-	root.allowOnly({"schema", "SPDX-License-Identifier", "command", "version", "comment", "quality", "recipe", "domain", "count",
-					"points", "weights", "powers"});
-	PatternFile file;
-	const Domain domain = enumOf<Domain>(root.at("domain"));
-	if (domain == Domain::slice)
-	{
-		root.at("domain").expected("that of a pattern; slices come in tiles");
-	}
-	if (ours || root.has("count"))
-	{
-		const auto count = static_cast<std::size_t>(root.at("count").integer(1, kMaxCount));
-		if (root.at("points").arraySize() != count)
-		{
-			root.at("points").expected("an array of " + std::to_string(count) + ", as count says");
-		}
-	}
-	file.weights_given = ours || root.has("weights");
-	file.pattern = readSamples(root, domain, file.weights_given);
-	readHead(root, file.command, file.version);
-	if (root.has("quality"))
-	{
-		file.quality = readMeasures<Quality>(root.at("quality"));
-	}
-	if (root.has("recipe"))
-	{
-		file.recipe = readRecipe(root.at("recipe"), file.pattern);
-	}
-	return file;
-}
-
-PatternFile readPattern(const std::string& path, std::optional<Domain> domain)
-{
-	const std::string text = readFile(path);
-	if (path.ends_with(".csv"))
-	{
-		return parsePatternCsv(text, path, domain);
-	}
-	PatternFile file = parsePatternJson(text, path);
-	if (domain.has_value() && file.pattern.domain != *domain)
-	{
-		throw Error(ExitCode::invalid_input, path + ": domain: found " + jsonText(nameOf(file.pattern.domain)) + ", expected " +
-												 jsonText(nameOf(*domain)) + " as asked for");
-	}
-	return file;
-}
-
-glm::dvec3 checkedPoint(Domain domain, const glm::dvec3& point, const std::string& where)
-{
-	if (domain == Domain::slice)
-	{
-		const glm::dvec3 rounded = toFloats(point);
-		if (!(rounded.x >= 0.0 && rounded.x < 1.0 && rounded.y >= 0.0 && rounded.y < 1.0))
-		{
-			fail(where, roundedText(point.x, 7) + ", " + roundedText(point.y, 7), "an azimuth and a jitter from 0 to below 1");
-		}
-		return rounded;
-	}
-	const double length = glm::length(point);
-	if (isDirectional(domain))
-	{
-		if (!(std::fabs(length - 1.0) <= kUnitLength))
-		{
-			fail(where, "a direction of length " + roundedText(length, 7), "length 1 (within 1e-5)");
-		}
-		if (domain == Domain::hemisphere && point.z < -1e-6)
-		{
-			fail(where, "z = " + roundedText(point.z, 7), "a direction of the upper hemisphere, z >= 0");
-		}
-		return toFloats(point);
-	}
-	if (!(length <= 1.0 + kOutside))
-	{
-		fail(where, "a point at distance " + roundedText(length, 7) + " from the centre",
-			 domain == Domain::disk ? "a point in the unit disk" : "a point in the unit ball");
-	}
-	glm::dvec3 inside = toFloats(point);
-	for (double shrink = 1.0; glm::dot(inside, inside) > 1.0;)
-	{
-		shrink -= 0x1p-24;
-		inside = toFloats(point * (shrink / length));
-	}
-	return inside;
-}
-
-void checkWeights(std::vector<double>& weights, const std::string& where, const SampleName& name_of)
-{
-	double sum = 0.0;
-	for (std::size_t i = 0; i < weights.size(); ++i)
-	{
-		if (!(weights[i] >= 0.0))
-		{
-			fail(name_of(i), "the weight " + roundedText(weights[i], 7), "a weight of 0 or more");
-		}
-		sum += weights[i];
-		weights[i] = roundToFloat(weights[i]);
-	}
-	if (!(std::fabs(sum - 1.0) <= kWeightSum))
-	{
-		fail(where, "the sum " + roundedText(sum, 7), "the sum 1 (within 1e-4)");
-	}
-}
-
-std::string jsonHead(const char* schema, const EmitContext& context)
-{
-	return "\t\"schema\": " + jsonText(schema) + ",\n\t\"command\": " + jsonText(context.command) +
-		   ",\n\t\"version\": " + jsonText(context.version) + ",\n\t\"SPDX-License-Identifier\": \"MIT\",\n";
-}
-
-std::string samplesJson(const Pattern& pattern, const std::string& indent)
-{
-	std::string text = indent + "\"points\": [";
-	for (std::size_t i = 0; i < pattern.count(); ++i)
-	{
-		const glm::dvec3& p = pattern.points[i];
-		text += (i == 0 ? "\n" : ",\n") + indent + "\t[" + floatText(p.x) + ", " + floatText(p.y);
-		text += dimensions(pattern.domain) == 3 ? ", " + floatText(p.z) + "]" : "]";
-	}
-	text += "\n" + indent + "],\n" + indent + "\"weights\": ";
-	text += listJson(pattern.weights, indent, [](double value) { return floatText(value); });
-	if (!pattern.powers.empty())
-	{
-		text += ",\n" + indent + "\"powers\": " + listJson(pattern.powers, indent, doubleText);
-	}
-	return text;
-}
-
-void requireSchema(const JsonValue& root, const char* schema)
-{
-	root.requireObject();
-	if (root.at("schema").string() != schema)
-	{
-		root.at("schema").expected(jsonText(schema));
-	}
-}
-
-void readHead(const JsonValue& root, std::string& command, std::string& version)
-{
-	for (const auto& [field, target] : {std::pair{"command", &command}, std::pair{"version", &version}})
-	{
-		if (root.has(field))
-		{
-			*target = root.at(field).string();
-		}
-	}
-	for (const char* field : {"comment", "SPDX-License-Identifier"})
-	{
-		if (root.has(field))
-		{
-			root.at(field).string();
-		}
-	}
-}
-
-Pattern readSamples(const JsonValue& object, Domain domain, bool weights_given)
-{
-	Pattern pattern;
-	pattern.domain = domain;
-	const JsonValue points = object.at("points");
-	const std::size_t count = points.arraySize();
-	if (count < 1 || count > static_cast<std::size_t>(kMaxCount))
-	{
-		points.expected("an array of 1 to " + std::to_string(kMaxCount) + " points");
-	}
-	pattern.points.resize(count);
-	for (std::size_t i = 0; i < count; ++i)
-	{
-		pattern.points[i] = readPoint(points.at(i), domain);
-	}
-	if (weights_given)
-	{
-		const JsonValue weights = object.at("weights");
-		pattern.weights = readNumbers(weights, count);
-		const std::string where = *object.path + ": " + weights.element;
-		checkWeights(pattern.weights, where, [&](std::size_t i) { return where + "[" + std::to_string(i) + "]"; });
-	}
-	if (object.has("powers"))
-	{
-		pattern.powers = readNumbers(object.at("powers"), count);
-	}
-	return pattern;
-}
-
-namespace
-{
 
 constexpr double kHalfLengthError = 1e-4;
 
@@ -546,6 +333,205 @@ Domain domainOf(const Sheet& sheet, std::optional<Domain> asked, const std::vect
 }
 
 } // namespace
+
+std::string patternJson(const Pattern& pattern, const Recipe* recipe, const Quality& quality, const EmitContext& context)
+{
+	std::string text = "{\n" + jsonHead(kPatternSchema, context) + "\t\"quality\": " + measuresJson(measuresOf(quality)) + ",\n";
+	if (recipe != nullptr)
+	{
+		text += "\t\"recipe\": " + recipeJson(*recipe) + ",\n";
+	}
+	text += "\t\"domain\": " + jsonText(nameOf(pattern.domain)) + ",\n\t\"count\": " + std::to_string(pattern.count()) + ",\n";
+	return text + samplesJson(pattern, "\t") + "\n}\n";
+}
+
+PatternFile parsePatternJson(const std::string& text, const std::string& path)
+{
+	const nlohmann::json document = parseJson(text, path);
+	const JsonValue root{&document, &path, ""};
+	root.requireObject();
+	const bool ours = root.has("schema");
+	if (ours)
+	{
+		requireSchema(root, kPatternSchema);
+	}
+	root.allowOnly({"schema", "SPDX-License-Identifier", "command", "version", "comment", "quality", "recipe", "domain", "count",
+					"points", "weights", "powers"});
+	PatternFile file;
+	const Domain domain = enumOf<Domain>(root.at("domain"));
+	if (domain == Domain::slice)
+	{
+		root.at("domain").expected("that of a pattern; slices come in tiles");
+	}
+	if (ours || root.has("count"))
+	{
+		const auto count = static_cast<std::size_t>(root.at("count").integer(1, kMaxCount));
+		if (root.at("points").arraySize() != count)
+		{
+			root.at("points").expected("an array of " + std::to_string(count) + ", as count says");
+		}
+	}
+	file.weights_given = ours || root.has("weights");
+	file.pattern = readSamples(root, domain, file.weights_given);
+	readHead(root, file.command, file.version);
+	if (root.has("quality"))
+	{
+		file.quality = readMeasures<Quality>(root.at("quality"));
+	}
+	if (root.has("recipe"))
+	{
+		file.recipe = readRecipe(root.at("recipe"), file.pattern);
+	}
+	return file;
+}
+
+PatternFile readPattern(const std::string& path, std::optional<Domain> domain)
+{
+	const std::string text = readFile(path);
+	if (path.ends_with(".csv"))
+	{
+		return parsePatternCsv(text, path, domain);
+	}
+	PatternFile file = parsePatternJson(text, path);
+	if (domain.has_value() && file.pattern.domain != *domain)
+	{
+		throw Error(ExitCode::invalid_input, path + ": domain: found " + jsonText(nameOf(file.pattern.domain)) + ", expected " +
+												 jsonText(nameOf(*domain)) + " as asked for");
+	}
+	return file;
+}
+
+glm::dvec3 checkedPoint(Domain domain, const glm::dvec3& point, const std::string& where)
+{
+	if (domain == Domain::slice)
+	{
+		const glm::dvec3 rounded = toFloats(point);
+		if (!(rounded.x >= 0.0 && rounded.x < 1.0 && rounded.y >= 0.0 && rounded.y < 1.0))
+		{
+			fail(where, roundedText(point.x, 7) + ", " + roundedText(point.y, 7), "an azimuth and a jitter from 0 to below 1");
+		}
+		return rounded;
+	}
+	const double length = glm::length(point);
+	if (isDirectional(domain))
+	{
+		if (!(std::fabs(length - 1.0) <= kUnitLength))
+		{
+			fail(where, "a direction of length " + roundedText(length, 7), "length 1 (within 1e-5)");
+		}
+		if (domain == Domain::hemisphere && point.z < -1e-6)
+		{
+			fail(where, "z = " + roundedText(point.z, 7), "a direction of the upper hemisphere, z >= 0");
+		}
+		return toFloats(point);
+	}
+	if (!(length <= 1.0 + kOutside))
+	{
+		fail(where, "a point at distance " + roundedText(length, 7) + " from the centre",
+			 domain == Domain::disk ? "a point in the unit disk" : "a point in the unit ball");
+	}
+	glm::dvec3 inside = toFloats(point);
+	for (double shrink = 1.0; glm::dot(inside, inside) > 1.0;)
+	{
+		shrink -= 0x1p-24;
+		inside = toFloats(point * (shrink / length));
+	}
+	return inside;
+}
+
+void checkWeights(std::vector<double>& weights, const std::string& where, const SampleName& name_of)
+{
+	double sum = 0.0;
+	for (std::size_t i = 0; i < weights.size(); ++i)
+	{
+		if (!(weights[i] >= 0.0))
+		{
+			fail(name_of(i), "the weight " + roundedText(weights[i], 7), "a weight of 0 or more");
+		}
+		sum += weights[i];
+		weights[i] = roundToFloat(weights[i]);
+	}
+	if (!(std::fabs(sum - 1.0) <= kWeightSum))
+	{
+		fail(where, "the sum " + roundedText(sum, 7), "the sum 1 (within 1e-4)");
+	}
+}
+
+std::string jsonHead(const char* schema, const EmitContext& context)
+{
+	return "\t\"schema\": " + jsonText(schema) + ",\n\t\"command\": " + jsonText(context.command) +
+		   ",\n\t\"version\": " + jsonText(context.version) + ",\n\t\"SPDX-License-Identifier\": \"MIT\",\n";
+}
+
+std::string samplesJson(const Pattern& pattern, const std::string& indent)
+{
+	std::string text = indent + "\"points\": [";
+	for (std::size_t i = 0; i < pattern.count(); ++i)
+	{
+		const glm::dvec3& p = pattern.points[i];
+		text += (i == 0 ? "\n" : ",\n") + indent + "\t[" + floatText(p.x) + ", " + floatText(p.y);
+		text += dimensions(pattern.domain) == 3 ? ", " + floatText(p.z) + "]" : "]";
+	}
+	text += "\n" + indent + "],\n" + indent + "\"weights\": ";
+	text += listJson(pattern.weights, indent, [](double value) { return floatText(value); });
+	if (!pattern.powers.empty())
+	{
+		text += ",\n" + indent + "\"powers\": " + listJson(pattern.powers, indent, doubleText);
+	}
+	return text;
+}
+
+void requireSchema(const JsonValue& root, const char* schema)
+{
+	root.requireObject();
+	if (root.at("schema").string() != schema)
+	{
+		root.at("schema").expected(jsonText(schema));
+	}
+}
+
+void readHead(const JsonValue& root, std::string& command, std::string& version)
+{
+	for (const auto& [field, target] : {std::pair{"command", &command}, std::pair{"version", &version}})
+	{
+		if (root.has(field))
+		{
+			*target = root.at(field).string();
+		}
+	}
+	for (const char* field : {"comment", "SPDX-License-Identifier"})
+	{
+		if (root.has(field))
+		{
+			root.at(field).string();
+		}
+	}
+}
+
+Pattern readSamples(const JsonValue& object, Domain domain, bool weights_given)
+{
+	Pattern pattern;
+	pattern.domain = domain;
+	const JsonValue points = object.at("points");
+	const std::size_t count = points.arraySize();
+	if (count < 1 || count > static_cast<std::size_t>(kMaxCount))
+	{
+		points.expected("an array of 1 to " + std::to_string(kMaxCount) + " points");
+	}
+	pattern.points = listOf(count, [&](std::size_t i) { return readPoint(points.at(i), domain); });
+	if (weights_given)
+	{
+		const JsonValue weights = object.at("weights");
+		pattern.weights = readNumbers(weights, count);
+		const std::string where = *object.path + ": " + weights.element;
+		checkWeights(pattern.weights, where, [&](std::size_t i) { return where + "[" + std::to_string(i) + "]"; });
+	}
+	if (object.has("powers"))
+	{
+		pattern.powers = readNumbers(object.at("powers"), count);
+	}
+	return pattern;
+}
 
 std::string patternCsv(const Pattern& pattern, const Quality& quality, const EmitContext& context)
 {

@@ -33,8 +33,7 @@ struct PatternFile
 // `path` is for messages only. Strict: unknown fields are rejected. Throws Error (invalid_input).
 PatternFile parsePatternJson(const std::string& text, const std::string& path);
 
-// Reads a pattern file: CSV if the path ends in .csv, else JSON. domain: expected domain, if known; a file that
-// contradicts it is an error.
+// Reads a pattern file: CSV if the path ends in .csv, else JSON. A file that contradicts the expected domain is an error.
 PatternFile readPattern(const std::string& path, std::optional<Domain> domain = std::nullopt);
 
 // Checks points and weights read from a file and rounds them to 32-bit values that the measures can rely on.

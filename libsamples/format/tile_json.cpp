@@ -52,10 +52,7 @@ TileRecipe readRecipe(const JsonValue& object, const PatternTile& tile)
 	recipe.progressive = object.has("progressive") && object.at("progressive").boolean();
 	if (object.has("filters"))
 	{
-		for (const JsonValue& filter : object.objects("filters"))
-		{
-			recipe.filters.push_back(readFilterFields(filter));
-		}
+		recipe.filters = mapped(object.objects("filters"), readFilterFields);
 		recipe.robust = object.at("robust").boolean();
 		recipe.frames = static_cast<int>(object.at("frames").integer(1, kMaxTileFrames));
 		recipe.ema = object.at("ema").number();
@@ -117,12 +114,8 @@ TileTransform readTransform(const JsonValue& value, Domain domain)
 	{
 		value.expected("an array of 4 numbers");
 	}
-	std::array<double, 4> numbers{};
-	for (std::size_t i = 0; i < numbers.size(); ++i)
-	{
-		numbers[i] = value.at(i).number();
-	}
-	const TileTransform t = transformOf(numbers, domain);
+	const TileTransform t =
+		transformOf({value.at(0).number(), value.at(1).number(), value.at(2).number(), value.at(3).number()}, domain);
 	const bool unit = domain == Domain::ball
 						  ? std::fabs(t.axis.x * t.axis.x + t.axis.y * t.axis.y + t.axis.z * t.axis.z - 1.0) <= 1e-5
 						  : std::fabs(t.cos * t.cos + t.sin * t.sin - 1.0) <= 1e-5 && std::fabs(t.handedness) == 1.0;
@@ -196,10 +189,7 @@ void readVariants(const JsonValue& root, std::size_t count, PatternTile& tile)
 	{
 		transforms.expected("an array of " + std::to_string(number) + ", one a variant");
 	}
-	for (std::size_t i = 0; i < number; ++i)
-	{
-		tile.transforms.push_back(readTransform(transforms.at(i), tile.domain));
-	}
+	tile.transforms = listOf(number, [&](std::size_t i) { return readTransform(transforms.at(i), tile.domain); });
 }
 
 // Returns the sum; throws if negative taps cancel it, which leaves no mean.
@@ -242,12 +232,11 @@ std::string tileJson(const PatternTile& tile, const TileRecipe* recipe, const Ti
 	{
 		text += "\t\"transforms\": " + transformsJson(tile) + ",\n";
 	}
-	text += "\t\"variants\": [";
-	for (std::size_t i = 0; i < tile.variants.size(); ++i)
+	const auto textOf = [](const Pattern& variant)
 	{
-		text += (i == 0 ? "\n\t\t{\n" : ",\n\t\t{\n") + samplesJson(tile.variants[i], "\t\t\t") + "\n\t\t}";
-	}
-	return text + "\n\t]\n}\n";
+		return "\n\t\t{\n" + samplesJson(variant, "\t\t\t") + "\n\t\t}";
+	};
+	return text + "\t\"variants\": [" + joinedText(tile.variants, ",", textOf) + "\n\t]\n}\n";
 }
 
 TileFile parseTileJson(const std::string& text, const std::string& path)
@@ -396,15 +385,8 @@ std::vector<TileFilter> filtersOf(const std::vector<std::string>& names, std::ve
 
 std::vector<std::string> filterFiles(const std::vector<std::string>& names)
 {
-	std::vector<std::string> files;
-	for (const std::string& text : names)
-	{
-		if (text.starts_with(kFile))
-		{
-			files.push_back(nameAndShare(text).first.substr(kFile.size()));
-		}
-	}
-	return files;
+	return mapped(itemsWhere(names, [](const std::string& text) { return text.starts_with(kFile); }),
+				  [](const std::string& text) { return nameAndShare(text).first.substr(kFile.size()); });
 }
 
 } // namespace nook

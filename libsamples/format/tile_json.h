@@ -35,8 +35,7 @@ struct TileFile
 	std::string version;
 };
 
-// `path` is for messages only. Throws Error (invalid_input). Unlike in pattern files, only recipe, quality, the commands and
-// version are optional.
+// `path` is for messages. Only recipe, quality, commands and version are optional. Throws Error (invalid_input).
 TileFile parseTileJson(const std::string& text, const std::string& path);
 TileFile readTile(const std::string& path);
 

@@ -93,41 +93,7 @@ void pointwise(Comparison& result, const VisibilityPlane& test, const Visibility
 	result.p95 = *at;
 }
 
-} // namespace
-
-Comparison compareImages(const VisibilityPlane& test, const VisibilityPlane& reference, const CompareSettings& settings,
-						 const RunSettings& run)
-{
-	assert(test.width_px == reference.width_px && test.height_px == reference.height_px);
-	assert(test.values.size() == reference.values.size() && !test.values.empty());
-	assert(settings.counted.empty() || settings.counted.size() == test.values.size());
-	Comparison result;
-	pointwise(result, test, reference, settings.counted, run);
-	result.ssim = meanSsim(test, reference, settings.counted, run);
-	result.flip = meanFlip(test, reference, settings.counted, settings.pixels_per_degree, run);
-	result.eq14 = logError(test, reference, settings.counted, run);
-	return result;
-}
-
-std::optional<double> errorBy(const Comparison& comparison, ErrorMetric metric)
-{
-	switch (metric)
-	{
-	case ErrorMetric::rmse: return comparison.rmse;
-	case ErrorMetric::mae: return comparison.mae;
-	case ErrorMetric::p95: return comparison.p95;
-	case ErrorMetric::max: return comparison.max;
-	case ErrorMetric::ssim: return comparison.ssim ? std::optional(1.0 - *comparison.ssim) : std::nullopt;
-	case ErrorMetric::flip: return comparison.flip;
-	case ErrorMetric::eq14: return comparison.eq14;
-	}
-	return std::nullopt;
-}
-
 // This work is based on: Morgan McGuire, "Ambient Occlusion Volumes", High Performance Graphics, 2010, eq. 14.
-
-namespace
-{
 
 // Table of log†(x) = sign(x) log(|x| + 1) for the integers from −255 to 255.
 class SignedLog
@@ -173,58 +139,8 @@ double mean(const PixelTally& tally)
 	return tally.count == 0 ? 0.0 : tally.sum / static_cast<double>(tally.count);
 }
 
-} // namespace
-
-double logError(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,
-				const RunSettings& run)
-{
-	assert(test.width_px == reference.width_px && test.height_px == reference.height_px);
-	const SignedLog log;
-	const auto width = static_cast<std::size_t>(test.width_px);
-	const auto height = static_cast<std::size_t>(test.height_px);
-	std::vector<Terms> rows(height);
-	parallelFor(height, run.threads,
-				[&](std::size_t y)
-				{
-					for (std::size_t x = 0; x < width; ++x)
-					{
-						const std::size_t i = y * width + x;
-						if (!counts(counted, i))
-						{
-							continue;
-						}
-						const int t = byteOf(test, i);
-						const int r = byteOf(reference, i);
-						const auto difference = [&](std::size_t next)
-						{
-							return squared(log(byteOf(test, next) - t) - log(byteOf(reference, next) - r));
-						};
-						rows[y].value.add(squared(log(t) - log(r)));
-						if (x + 1 < width && counts(counted, i + 1))
-						{
-							rows[y].right.add(difference(i + 1));
-						}
-						if (y + 1 < height && counts(counted, i + width))
-						{
-							rows[y].down.add(difference(i + width));
-						}
-					}
-				});
-	Terms sum;
-	for (const Terms& row : rows)
-	{
-		sum.value += row.value;
-		sum.right += row.right;
-		sum.down += row.down;
-	}
-	return mean(sum.value) + 0.5 * (mean(sum.right) + mean(sum.down));
-}
-
 // This work is based on: Zhou Wang, Alan C. Bovik, Hamid R. Sheikh, Eero P. Simoncelli, "Image Quality Assessment: From Error
 // Visibility to Structural Similarity", IEEE Transactions on Image Processing, 2004.
-
-namespace
-{
 
 constexpr int kWindow = 5;     // §III-C: 11 × 11
 constexpr double kSigma = 1.5; // §III-C
@@ -251,65 +167,12 @@ std::vector<double> means(const Band& band, const VisibilityPlane& test, const V
 	return filteredBand(band, source, kernel, kernel);
 }
 
-} // namespace
-
-std::optional<double> meanSsim(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,
-							   const RunSettings& run)
-{
-	assert(test.width_px == reference.width_px && test.height_px == reference.height_px);
-	const Kernel kernel = gaussianKernel(kSigma, kWindow);
-	const std::vector<Band> bands = bandsOf(test.width_px, test.height_px);
-	std::vector<PixelTally> rows(static_cast<std::size_t>(test.height_px));
-	ProgressCounter progress(run.progress, "ssim", bands.size());
-	parallelFor(bands.size(), run.threads,
-				[&](std::size_t b)
-				{
-					const Band& band = bands[b];
-					const auto of = [&](auto f)
-					{
-						return means(band, test, reference, kernel, f);
-					};
-					// Eqs. 14 to 16. The mean of products minus the product of means loses precision only in nearly flat windows,
-					// where C2 dominates.
-					const std::vector<double> mean_t = of([](double t, double) { return t; });
-					const std::vector<double> mean_r = of([](double, double r) { return r; });
-					const std::vector<double> square_t = of([](double t, double) { return t * t; });
-					const std::vector<double> square_r = of([](double, double r) { return r * r; });
-					const std::vector<double> product = of([](double t, double r) { return t * r; });
-					const auto width = static_cast<std::size_t>(test.width_px);
-					for (int y = std::max(band.first, kWindow); y < std::min(band.last, test.height_px - kWindow); ++y)
-					{
-						for (std::size_t x = kWindow; x + kWindow < width; ++x)
-						{
-							if (!counts(counted, static_cast<std::size_t>(y) * width + x))
-							{
-								continue;
-							}
-							const std::size_t i = static_cast<std::size_t>(y - band.first) * width + x;
-							const double tt = mean_t[i] * mean_t[i];
-							const double rr = mean_r[i] * mean_r[i];
-							const double tr = mean_t[i] * mean_r[i];
-							// Eq. 13
-							rows[static_cast<std::size_t>(y)].add(
-								(2.0 * tr + kC1) * (2.0 * (product[i] - tr) + kC2) /
-								((tt + rr + kC1) * (square_t[i] - tt + (square_r[i] - rr) + kC2)));
-						}
-					}
-					progress.finishOne();
-				});
-	const PixelTally sum = total(rows);
-	return sum.count == 0 ? std::nullopt : std::optional(sum.sum / static_cast<double>(sum.count));
-}
-
 // This work is based on: Pontus Andersson, Jim Nilsson, Tomas Akenine-Möller, Magnus Oskarsson, Kalle Åström, Mark D. Fairchild,
 // "FLIP: A Difference Evaluator for Alternating Images", Proceedings of the ACM on Computer Graphics and Interactive Techniques,
 // 2020.
 //
 // Gray pictures only. With R = G = B the opponent channels Cx and Cz are 0, and Y of YCxCz is 116 × linear luminance − 16, so the
 // contrast sensitivity filter acts on linear luminance only and a* = b* = 0. For gray pictures this is the complete method.
-
-namespace
-{
 
 // §4.1.1, table 1: exp(−π² x² / b) with x in degrees. The support is that of the paper's widest filter.
 constexpr double kContrastAchromatic = 0.0047;
@@ -459,7 +322,138 @@ Seen seen(const Band& band, const VisibilityPlane& plane, const Filters& filters
 			strength(band, source, filters.point, filters.smooth)};
 }
 
+// Extends the row by `radius` copies of its end pixels on either side.
+void extend(std::vector<double>& row, int radius, int width)
+{
+	const auto begin = row.begin() + radius;
+	const auto end = begin + width;
+	std::fill(row.begin(), begin, *begin);
+	std::fill(end, row.end(), *(end - 1));
+}
+
 } // namespace
+
+Comparison compareImages(const VisibilityPlane& test, const VisibilityPlane& reference, const CompareSettings& settings,
+						 const RunSettings& run)
+{
+	assert(test.width_px == reference.width_px && test.height_px == reference.height_px);
+	assert(test.values.size() == reference.values.size() && !test.values.empty());
+	assert(settings.counted.empty() || settings.counted.size() == test.values.size());
+	Comparison result;
+	pointwise(result, test, reference, settings.counted, run);
+	result.ssim = meanSsim(test, reference, settings.counted, run);
+	result.flip = meanFlip(test, reference, settings.counted, settings.pixels_per_degree, run);
+	result.eq14 = logError(test, reference, settings.counted, run);
+	return result;
+}
+
+std::optional<double> errorBy(const Comparison& comparison, ErrorMetric metric)
+{
+	switch (metric)
+	{
+	case ErrorMetric::rmse: return comparison.rmse;
+	case ErrorMetric::mae: return comparison.mae;
+	case ErrorMetric::p95: return comparison.p95;
+	case ErrorMetric::max: return comparison.max;
+	case ErrorMetric::ssim: return comparison.ssim ? std::optional(1.0 - *comparison.ssim) : std::nullopt;
+	case ErrorMetric::flip: return comparison.flip;
+	case ErrorMetric::eq14: return comparison.eq14;
+	}
+	return std::nullopt;
+}
+
+double logError(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,
+				const RunSettings& run)
+{
+	assert(test.width_px == reference.width_px && test.height_px == reference.height_px);
+	const SignedLog log;
+	const auto width = static_cast<std::size_t>(test.width_px);
+	const auto height = static_cast<std::size_t>(test.height_px);
+	std::vector<Terms> rows(height);
+	parallelFor(height, run.threads,
+				[&](std::size_t y)
+				{
+					for (std::size_t x = 0; x < width; ++x)
+					{
+						const std::size_t i = y * width + x;
+						if (!counts(counted, i))
+						{
+							continue;
+						}
+						const int t = byteOf(test, i);
+						const int r = byteOf(reference, i);
+						const auto difference = [&](std::size_t next)
+						{
+							return squared(log(byteOf(test, next) - t) - log(byteOf(reference, next) - r));
+						};
+						rows[y].value.add(squared(log(t) - log(r)));
+						if (x + 1 < width && counts(counted, i + 1))
+						{
+							rows[y].right.add(difference(i + 1));
+						}
+						if (y + 1 < height && counts(counted, i + width))
+						{
+							rows[y].down.add(difference(i + width));
+						}
+					}
+				});
+	Terms sum;
+	for (const Terms& row : rows)
+	{
+		sum.value += row.value;
+		sum.right += row.right;
+		sum.down += row.down;
+	}
+	return mean(sum.value) + 0.5 * (mean(sum.right) + mean(sum.down));
+}
+
+std::optional<double> meanSsim(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,
+							   const RunSettings& run)
+{
+	assert(test.width_px == reference.width_px && test.height_px == reference.height_px);
+	const Kernel kernel = gaussianKernel(kSigma, kWindow);
+	const std::vector<Band> bands = bandsOf(test.width_px, test.height_px);
+	std::vector<PixelTally> rows(static_cast<std::size_t>(test.height_px));
+	ProgressCounter progress(run.progress, "ssim", bands.size());
+	parallelFor(bands.size(), run.threads,
+				[&](std::size_t b)
+				{
+					const Band& band = bands[b];
+					const auto of = [&](auto f)
+					{
+						return means(band, test, reference, kernel, f);
+					};
+					// Eqs. 14 to 16. The mean of products minus the product of means loses precision only in nearly flat windows,
+					// where C2 dominates.
+					const std::vector<double> mean_t = of([](double t, double) { return t; });
+					const std::vector<double> mean_r = of([](double, double r) { return r; });
+					const std::vector<double> square_t = of([](double t, double) { return t * t; });
+					const std::vector<double> square_r = of([](double, double r) { return r * r; });
+					const std::vector<double> product = of([](double t, double r) { return t * r; });
+					const auto width = static_cast<std::size_t>(test.width_px);
+					for (int y = std::max(band.first, kWindow); y < std::min(band.last, test.height_px - kWindow); ++y)
+					{
+						for (std::size_t x = kWindow; x + kWindow < width; ++x)
+						{
+							if (!counts(counted, static_cast<std::size_t>(y) * width + x))
+							{
+								continue;
+							}
+							const std::size_t i = static_cast<std::size_t>(y - band.first) * width + x;
+							const double tt = mean_t[i] * mean_t[i];
+							const double rr = mean_r[i] * mean_r[i];
+							const double tr = mean_t[i] * mean_r[i];
+							// Eq. 13
+							rows[static_cast<std::size_t>(y)].add(
+								(2.0 * tr + kC1) * (2.0 * (product[i] - tr) + kC2) /
+								((tt + rr + kC1) * (square_t[i] - tt + (square_r[i] - rr) + kC2)));
+						}
+					}
+					progress.finishOne();
+				});
+	const PixelTally sum = total(rows);
+	return sum.count == 0 ? std::nullopt : std::optional(sum.sum / static_cast<double>(sum.count));
+}
 
 double meanFlip(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,
 				double pixels_per_degree, const RunSettings& run)
@@ -499,20 +493,6 @@ double meanFlip(const VisibilityPlane& test, const VisibilityPlane& reference, s
 	const PixelTally sum = total(rows);
 	return sum.sum / static_cast<double>(sum.count);
 }
-
-namespace
-{
-
-// Extends the row by `radius` copies of its end pixels on either side.
-void extend(std::vector<double>& row, int radius, int width)
-{
-	const auto begin = row.begin() + radius;
-	const auto end = begin + width;
-	std::fill(row.begin(), begin, *begin);
-	std::fill(end, row.end(), *(end - 1));
-}
-
-} // namespace
 
 Kernel gaussianKernel(double sigma_px, int radius)
 {

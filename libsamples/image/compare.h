@@ -60,8 +60,7 @@ Comparison compareImages(const VisibilityPlane& test, const VisibilityPlane& ref
 std::optional<double> meanSsim(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,
 							   const RunSettings& run);
 
-// LDR-FLIP (Andersson et al. 2020). Visibility is treated as a display value: gray with R = G = B = visibility in sRGB, clamped to
-// 0…1. Border pixels are repeated.
+// LDR-FLIP (Andersson et al. 2020) of visibility as a gray sRGB value, clamped to 0…1. Border pixels are repeated.
 double meanFlip(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,
 				double pixels_per_degree, const RunSettings& run);
 

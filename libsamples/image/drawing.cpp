@@ -8,7 +8,6 @@
 
 #include <glm/geometric.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -65,12 +64,8 @@ std::string paints(const Shape& shape)
 
 std::string pathOf(const Shape& shape)
 {
-	std::string text;
-	for (const glm::dvec2& p : shape.points)
-	{
-		text += (text.empty() ? "M" : "L") + lengthText(p.x) + " " + lengthText(p.y);
-	}
-	return text + (shape.kind == ShapeKind::polygon ? "Z" : "");
+	return "M" + joinedText(shape.points, "L", [](const glm::dvec2& p) { return lengthText(p.x) + " " + lengthText(p.y); }) +
+		   (shape.kind == ShapeKind::polygon ? "Z" : "");
 }
 
 std::string elementOf(const Shape& shape)

@@ -8,7 +8,6 @@
 #include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include <span>
-#include <string_view>
 
 #include <glm/vec2.hpp>
 

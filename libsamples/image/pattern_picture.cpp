@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/image.h"
+#include "core/lists.h"
 #include "core/math.h"
 #include "image/drawing.h"
 #include "pattern/cells.h"
@@ -124,11 +125,6 @@ void addLine(Drawing& drawing, std::vector<glm::dvec2> points, const Colour& str
 	drawing.shapes.push_back({.kind = ShapeKind::line, .points = std::move(points), .stroke = stroke, .stroke_width = width});
 }
 
-void addBar(Drawing& drawing, double left, double right, double top, double bottom, const Colour& fill)
-{
-	drawing.shapes.push_back({.points = {{left, top}, {right, top}, {right, bottom}, {left, bottom}}, .fill = fill});
-}
-
 // Radius in pixels of each dot for `count` points in a frame.
 double dotRadius(const PictureFrame& frame, std::size_t count)
 {
@@ -148,10 +144,7 @@ void addCells(Drawing& drawing, const PictureFrame& frame, const std::vector<Cel
 			continue;
 		}
 		Shape& shape = drawing.shapes.emplace_back();
-		for (const glm::dvec2& corner : cells[i])
-		{
-			shape.points.push_back(frame.at(corner));
-		}
+		shape.points = mapped(cells[i], [&frame](const glm::dvec2& corner) { return frame.at(corner); });
 		shape.fill = scale.colour(deviationOf(pattern, i));
 		shape.stroke = kBorder;
 		shape.stroke_width = width;
@@ -179,8 +172,9 @@ void addLegend(Drawing& drawing, const glm::dvec2& top, double width, const Weig
 	for (int i = 0; i < steps; ++i)
 	{
 		const double right = left + width * (i + 1) / steps + (i + 1 < steps ? 0.5 : 0.0); // overlaps the next one to avoid seams
-		addBar(drawing, left + width * i / steps, right, top.y, top.y + height,
-			   scale.colour(least + (scale.range - least) * ((i + 0.5) / steps)));
+		const double from = left + width * i / steps;
+		drawing.shapes.push_back({.points = {{from, top.y}, {right, top.y}, {right, top.y + height}, {from, top.y + height}},
+								  .fill = scale.colour(least + (scale.range - least) * ((i + 0.5) / steps))});
 	}
 	const double text_y = top.y + height - 1.0;
 	addText(drawing, {left - 8.0, text_y}, 12.0, kSoftInk, percentText(least), Anchor::end);
@@ -378,8 +372,7 @@ constexpr int kGreatestFactor = 32;
 constexpr int kLegendHeight = 48;
 constexpr Colour kNotCounted = colourOf(0x9a9a9a);
 
-// `share` is −1 to 1. The blue and red are distinguishable for the colour-blind, and both darken evenly from white, so that size
-// reads before sign.
+// `share`: −1 to 1. The colour-blind can tell this blue and red, and both darken evenly from white.
 Colour differenceColour(double share)
 {
 	constexpr std::array kDarker{colourOf(0xffffff), colourOf(0x8cbfe6), colourOf(0x2a6fbb), colourOf(0x08306b)};
@@ -537,14 +530,8 @@ double differenceRange(const VisibilityPlane& test, const VisibilityPlane& refer
 	}
 	const auto at = sizes.begin() + static_cast<std::ptrdiff_t>((99 * sizes.size() + 99) / 100 - 1);
 	std::nth_element(sizes.begin(), at, sizes.end());
-	for (const double round : {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5})
-	{
-		if (*at <= round)
-		{
-			return round;
-		}
-	}
-	return 1.0;
+	constexpr std::array kRound{0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0};
+	return *std::lower_bound(kRound.begin(), kRound.end() - 1, *at);
 }
 
 std::string differencePng(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,

@@ -32,14 +32,11 @@ template <class Picture> void requireSameSize(const Picture& test, const Picture
 
 bool isGray(const Image& image, int r, int g, int b)
 {
-	for (std::size_t i = 0; i < image.values.size() / image.channels.size(); ++i)
+	const auto isColoured = [&](std::size_t i)
 	{
-		if (image.at(i, r) != image.at(i, g) || image.at(i, r) != image.at(i, b))
-		{
-			return false;
-		}
-	}
-	return true;
+		return image.at(i, r) != image.at(i, g) || image.at(i, r) != image.at(i, b);
+	};
+	return indicesWhere(image.values.size() / image.channels.size(), isColoured).empty();
 }
 
 struct Choice

@@ -14,12 +14,6 @@
 namespace nook
 {
 
-// Escapes what could end the script element that holds the data.
-inline std::string escapedJson(std::string_view json)
-{
-	return joinedText(json, "", [](const char c) { return c == '<' ? "\\u003c" : std::string(1, c); });
-}
-
 struct PageSlot
 {
 	std::string_view name; // "@STYLE@"
@@ -61,21 +55,15 @@ struct PageText
 
 inline std::string pageHtml(const PageText& page)
 {
-	std::string style(assets::page_css);
-	for (const std::string_view text : page.styles)
-	{
-		style += text;
-	}
-	std::string script(assets::parts_js);
-	for (const std::string_view text : page.scripts)
-	{
-		script += text;
-	}
+	const std::string style = std::string(assets::page_css) + joinedText(page.styles, "");
+	const std::string script = std::string(assets::parts_js) + joinedText(page.scripts, "");
+	// No text may end the script element that holds the data.
+	const std::string data = joinedText(page.json, "", [](const char c) { return c == '<' ? "\\u003c" : std::string(1, c); });
 	return filledPage(assets::frame_html, {{"@VERSION@", xmlText(page.version)},
 										   {"@TITLE@", xmlText(page.title)},
 										   {"@STYLE@", style},
 										   {"@BODY@", std::string(page.body)},
-										   {"@DATA@", escapedJson(page.json)},
+										   {"@DATA@", data},
 										   {"@SCRIPT@", script}});
 }
 

@@ -182,26 +182,6 @@ private:
 	std::vector<Corner> m_scratch;
 };
 
-} // namespace
-
-Cells planeCells(Domain domain, std::span<const glm::dvec3> points, std::span<const double> powers)
-{
-	const Neighbours neighbours = planeNeighbours(points, powers);
-	Cells cells;
-	cells.integrals.assign(points.size(), 0.0);
-	cells.centroids.assign(points.begin(), points.end());
-	PlaneCell cell(domain, points);
-	for (std::size_t i = 0; i < points.size(); ++i)
-	{
-		if (neighbours.visible[i] != 0)
-		{
-			cell.build(static_cast<int>(i), powers, neighbours.lists[i]);
-			cell.addTo(cells);
-		}
-	}
-	return cells;
-}
-
 // Cells of points in the unit ball, density 3/(4π).
 //
 // A cell is a convex polyhedron cut out of a cube around the ball. By the divergence theorem its volume inside the ball is ⅓ Σ over
@@ -209,9 +189,6 @@ Cells planeCells(Domain domain, std::span<const glm::dvec3> points, std::span<co
 // face's plane from the origin. Within a face, both are sums over its edges of wedges from the foot of the perpendicular, clipped
 // to the circle of radius ρ = √(1−h²). Each term is continuous where a plane passes through the origin, so symmetric sets, whose
 // cells meet there, need no special treatment.
-
-namespace
-{
 
 constexpr double kBoxHalf = 2.0;
 constexpr double kBallDensity = 0.75 / kPi;
@@ -430,30 +407,8 @@ private:
 	std::vector<glm::dvec3> m_scratch;
 };
 
-} // namespace
-
-Cells spaceCells(std::span<const glm::dvec3> points, std::span<const double> powers)
-{
-	const Neighbours neighbours = spaceNeighbours(points, powers);
-	Cells cells;
-	cells.integrals.assign(points.size(), 0.0);
-	cells.centroids.assign(points.begin(), points.end());
-	SpaceCell cell(points, powers);
-	for (std::size_t i = 0; i < points.size(); ++i)
-	{
-		if (neighbours.visible[i] != 0)
-		{
-			cell.addTo(cells, static_cast<int>(i), neighbours.lists[i]);
-		}
-	}
-	return cells;
-}
-
 // Cells of directions on the unit sphere, density 1/4π: spherical Voronoi diagrams or, with powers, the spherical Laguerre diagram
 // (Sugihara, "Laguerre Voronoi diagram on the sphere", 2002), whose borders are also great circles.
-
-namespace
-{
 
 constexpr double kSphereDensity = 0.25 / kPi;
 
@@ -565,6 +520,41 @@ void addCell(Cells& cells, int index, const glm::dvec3& direction, const std::ve
 }
 
 } // namespace
+
+Cells planeCells(Domain domain, std::span<const glm::dvec3> points, std::span<const double> powers)
+{
+	const Neighbours neighbours = planeNeighbours(points, powers);
+	Cells cells;
+	cells.integrals.assign(points.size(), 0.0);
+	cells.centroids.assign(points.begin(), points.end());
+	PlaneCell cell(domain, points);
+	for (std::size_t i = 0; i < points.size(); ++i)
+	{
+		if (neighbours.visible[i] != 0)
+		{
+			cell.build(static_cast<int>(i), powers, neighbours.lists[i]);
+			cell.addTo(cells);
+		}
+	}
+	return cells;
+}
+
+Cells spaceCells(std::span<const glm::dvec3> points, std::span<const double> powers)
+{
+	const Neighbours neighbours = spaceNeighbours(points, powers);
+	Cells cells;
+	cells.integrals.assign(points.size(), 0.0);
+	cells.centroids.assign(points.begin(), points.end());
+	SpaceCell cell(points, powers);
+	for (std::size_t i = 0; i < points.size(); ++i)
+	{
+		if (neighbours.visible[i] != 0)
+		{
+			cell.addTo(cells, static_cast<int>(i), neighbours.lists[i]);
+		}
+	}
+	return cells;
+}
 
 Cells directionCells(std::span<const glm::dvec3> points, std::span<const double> powers)
 {

@@ -157,8 +157,7 @@ Neighbours directionNeighbours(std::span<const glm::dvec3> scaled_directions)
 		result.visible[static_cast<std::size_t>(corner)] = 1;
 		result.link(corner, index_of.at(corners[b]));
 	};
-	// All corners are coplanar and in order: there are two triangles fewer than corners, and CGAL 5.5.1 numbers them past the last
-	// corner.
+	// All corners are coplanar and in order: two triangles fewer, which CGAL 5.5.1 numbers past the last corner.
 	if (triangles.size() + 2 == corners.size())
 	{
 		for (std::size_t i = 0; i < corners.size(); ++i)

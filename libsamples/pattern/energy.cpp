@@ -256,8 +256,7 @@ namespace
 
 using namespace energy;
 
-// Number of rotations that approximate all of them: the mean over the angle is smooth, and the trapezoid rule's error at 48 is
-// below 1e-6 of plane².
+// Rotations that approximate all: the mean over the angle is smooth, and the trapezoid rule's error is below 1e-6 of plane².
 constexpr int kBiasRotations = 48;
 
 // All rows of the whole part at once; each pair is computed once for both of its samples.
@@ -304,12 +303,10 @@ void addShellRow(std::span<const Sample> samples, std::size_t i, double sign, Ro
 
 std::vector<SinCos> evenTurns(int count)
 {
-	std::vector<SinCos> turns;
-	for (int m = 0; m < count; ++m)
-	{
-		turns.push_back(m == 0 ? SinCos{0.0, 1.0} : sinCosOf(2.0 * kPi * m / count));
-	}
-	return turns;
+	return listOf(static_cast<std::size_t>(count),
+				  [count](std::size_t m) {
+					  return m == 0 ? SinCos{0.0, 1.0} : sinCosOf(2.0 * kPi * static_cast<double>(m) / count);
+				  });
 }
 
 // Pairs of one group's samples with each other and with the groups at half of the offsets; the opposite offset is the same pair

@@ -35,8 +35,7 @@ struct EnergyGradient
 	std::vector<double> weights;
 };
 
-// The squared error, exact up to rounding (1e-15 absolute); `gradient` may be null. Weights are ≥ 0 with sum 1.
-// `threads` never changes the result.
+// The squared error, exact to 1e-15, for any number of threads; `gradient` may be null. Weights are ≥ 0 with sum 1.
 double squaredError(Domain domain, Ensemble ensemble, Part part, std::span<const glm::dvec3> points,
 					std::span<const double> weights, EnergyGradient* gradient = nullptr, int threads = 1);
 
@@ -58,8 +57,7 @@ double tileSquaredError(Domain domain, const TileShares& shares, std::span<const
 						std::span<const double> weights, EnergyGradient* gradient = nullptr, int threads = 1,
 						ProgressCounter* progress = nullptr);
 
-// The quadratic form of the squared error in the weights: Σ w_i linear_i − ½ Σ w_i w_j pairs_ij + constant (pairs row by row). Used
-// to fit weights.
+// The squared error as a form in the weights: Σ w_i linear_i − ½ Σ w_i w_j pairs_ij + constant (pairs row by row).
 struct QuadraticForm
 {
 	std::vector<double> linear;

@@ -203,8 +203,7 @@ inline TorusDistance torusDistance(const glm::dvec3& difference)
 namespace nook
 {
 
-// Many pairs of lines a and b at once, with vector instructions; the same bits as the functions above. A weight is the line's
-// weight times the pair's.
+// Many pairs of lines at once, with the bits of the functions above. A weight is the line's weight times the pair's.
 struct LinePairs
 {
 	static constexpr std::size_t kMost = 64;

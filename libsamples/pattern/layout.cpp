@@ -19,6 +19,65 @@ namespace
 constexpr double kRim = 1.0 - 1e-6;     // greatest radius of a placed point
 constexpr double kLimit = 1.0 - 0.5e-6; // greatest radius for an optimiser; a placed point stays below it after rounding
 
+// Maps u in [0, 1)³ to a point distributed by the domain's measure. For a symmetric layout the azimuths cover half a turn, so that
+// the points and their opposites together cover the domain.
+glm::dvec3 pointOf(const Layout& layout, const glm::dvec3& u)
+{
+	const SinCos turn = sinCosOf((layout.symmetric() ? kPi : 2.0 * kPi) * u.y);
+	const auto ring = [&](double r)
+	{
+		return glm::dvec3(r * turn.cos, r * turn.sin, 0.0);
+	};
+	glm::dvec3 p(0.0);
+	switch (layout.domain())
+	{
+	case Domain::disk: // the measure within r is 1 − (1−r²)^{3/2}
+		p = ring(std::sqrt(std::max(0.0, 1.0 - powOf(1.0 - u.x, 2.0 / 3.0))));
+		break;
+	case Domain::hemisphere: p = ring(std::sqrt(u.x)); break;
+	case Domain::slice: break; // has no layout
+	case Domain::sphere:
+	case Domain::ball:
+	{
+		const double z = 1.0 - 2.0 * u.x;
+		p = ring(std::sqrt(std::max(0.0, (1.0 - z) * (1.0 + z))));
+		p.z = z;
+		if (layout.domain() == Domain::ball)
+		{
+			p *= u.z > 0.0 ? powOf(u.z, 1.0 / 3.0) : 0.0;
+		}
+		break;
+	}
+	}
+	return placeInDomain(layout.domain(), p);
+}
+
+glm::dvec3 randomPoint(const Layout& layout, Random& random)
+{
+	glm::dvec3 u;
+	u.x = random.uniform();
+	u.y = random.uniform();
+	u.z = random.uniform();
+	return pointOf(layout, u);
+}
+
+Points makePoints(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)
+{
+	Random random(recipe.seed, 0);
+	switch (recipe.method)
+	{
+	case Method::refine: return refine(recipe, layout, run, watch);
+	case Method::random: return randomPoints(layout, random);
+	case Method::poisson: return poissonPoints(layout, random);
+	case Method::halton: return haltonPoints(layout);
+	case Method::vogel: return vogelPoints(layout);
+	case Method::electro:
+	case Method::equal:
+	case Method::lloyd: break;
+	}
+	return relaxStarts(recipe, layout, run, watch);
+}
+
 } // namespace
 
 glm::dvec3 placeInDomain(Domain domain, const glm::dvec3& p)
@@ -163,70 +222,6 @@ void Layout::symmetrise(std::span<double> values) const
 	}
 }
 
-namespace
-{
-
-// Maps u in [0, 1)³ to a point distributed by the domain's measure. For a symmetric layout the azimuths cover half a turn, so that
-// the points and their opposites together cover the domain.
-glm::dvec3 pointOf(const Layout& layout, const glm::dvec3& u)
-{
-	const SinCos turn = sinCosOf((layout.symmetric() ? kPi : 2.0 * kPi) * u.y);
-	const auto ring = [&](double r)
-	{
-		return glm::dvec3(r * turn.cos, r * turn.sin, 0.0);
-	};
-	glm::dvec3 p(0.0);
-	switch (layout.domain())
-	{
-	case Domain::disk: // the measure within r is 1 − (1−r²)^{3/2}
-		p = ring(std::sqrt(std::max(0.0, 1.0 - powOf(1.0 - u.x, 2.0 / 3.0))));
-		break;
-	case Domain::hemisphere: p = ring(std::sqrt(u.x)); break;
-	case Domain::slice: break; // has no layout
-	case Domain::sphere:
-	case Domain::ball:
-	{
-		const double z = 1.0 - 2.0 * u.x;
-		p = ring(std::sqrt(std::max(0.0, (1.0 - z) * (1.0 + z))));
-		p.z = z;
-		if (layout.domain() == Domain::ball)
-		{
-			p *= u.z > 0.0 ? powOf(u.z, 1.0 / 3.0) : 0.0;
-		}
-		break;
-	}
-	}
-	return placeInDomain(layout.domain(), p);
-}
-
-glm::dvec3 randomPoint(const Layout& layout, Random& random)
-{
-	glm::dvec3 u;
-	u.x = random.uniform();
-	u.y = random.uniform();
-	u.z = random.uniform();
-	return pointOf(layout, u);
-}
-
-Points makePoints(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)
-{
-	Random random(recipe.seed, 0);
-	switch (recipe.method)
-	{
-	case Method::refine: return refine(recipe, layout, run, watch);
-	case Method::random: return randomPoints(layout, random);
-	case Method::poisson: return poissonPoints(layout, random);
-	case Method::halton: return haltonPoints(layout);
-	case Method::vogel: return vogelPoints(layout);
-	case Method::electro:
-	case Method::equal:
-	case Method::lloyd: break;
-	}
-	return relaxStarts(recipe, layout, run, watch);
-}
-
-} // namespace
-
 std::vector<glm::dvec3> randomPoints(const Layout& layout, Random& random)
 {
 	return layout.expand(listOf(layout.freeCount(), [&](std::size_t) { return randomPoint(layout, random); }));
@@ -279,12 +274,12 @@ std::vector<glm::dvec3> poissonPoints(const Layout& layout, Random& random)
 
 std::vector<glm::dvec3> haltonPoints(const Layout& layout)
 {
-	std::vector<glm::dvec3> free;
-	for (unsigned k = 1; k <= layout.freeCount(); ++k)
+	const auto freePoint = [&layout](std::size_t i)
 	{
-		free.push_back(pointOf(layout, {radicalInverse(k, 2), radicalInverse(k, 3), radicalInverse(k, 5)}));
-	}
-	return layout.expand(free);
+		const auto k = static_cast<unsigned>(i + 1);
+		return pointOf(layout, {radicalInverse(k, 2), radicalInverse(k, 3), radicalInverse(k, 5)});
+	};
+	return layout.expand(listOf(layout.freeCount(), freePoint));
 }
 
 std::vector<glm::dvec3> vogelPoints(const Layout& layout)

@@ -16,8 +16,7 @@
 namespace nook
 {
 
-// The nearest valid position: disk z = 0, directions unit length, hemisphere lifted from (x, y); radii at most 1 − 1e-6 (sphere:
-// exactly 1).
+// The nearest valid position: disk z = 0; directions of unit length; radii at most 1 − 1e-6; hemisphere lifted from (x, y).
 glm::dvec3 placeInDomain(Domain domain, const glm::dvec3& p);
 
 // Separates a pattern's free points from those that follow: a fixed centre first, then the free points, each followed by its
@@ -187,8 +186,7 @@ void relaxEqual(const Layout& layout, Points& points, int rounds, const Seen& se
 // sphere: least energy), by the plane error for the others.
 Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch);
 
-// Gradient descent on the recipe's measure; returns the value reached. For noise and window, plane_limit is the greatest plane
-// error allowed (soft); 0: no limit.
+// Gradient descent on the recipe's measure; returns the value reached. plane_limit: soft limit of the plane error; 0: none.
 double descend(const Recipe& recipe, const Layout& layout, Points& points, Minimise minimise, double plane_limit, int threads,
 			   const Seen& seen);
 
@@ -211,8 +209,7 @@ std::vector<glm::dvec3> poissonPoints(const Layout& layout, Random& random);
 // Halton's sequence in bases 2, 3, 5 from index 1, mapped through the measure's inverse distribution.
 std::vector<glm::dvec3> haltonPoints(const Layout& layout);
 
-// Golden-angle spiral (Vogel 1979; on the sphere Swinbank and Purser 2006); in the ball the radii also follow a golden-ratio
-// sequence.
+// Golden-angle spiral (Vogel 1979; sphere: Swinbank and Purser 2006); radii in the ball follow a golden-ratio sequence.
 std::vector<glm::dvec3> vogelPoints(const Layout& layout);
 
 struct LbfgsSettings

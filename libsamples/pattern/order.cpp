@@ -5,6 +5,7 @@
 // (QuadraticForm). Variants are ordered one after the other. Each next sample minimises this error together with that of the
 // neighbouring variants' prefixes that are already ordered, because no filter can correct an error they all share. Opposite samples
 // stay together, and a centre stays first.
+#include "core/lists.h"
 #include "core/random.h"
 #include "pattern/energy.h"
 #include "pattern/methods.h"
@@ -271,65 +272,7 @@ private:
 	std::size_t m_variants;
 };
 
-} // namespace
-
-void orderProgressively(const Pattern& base, const TileRecipe& recipe, std::vector<Pattern>& variants, const RunSettings& run)
-{
-	const Recipe structure = structureOf(base);
-	const std::vector<Unit> units = unitsOf(structure, base.count());
-	const TileShares shares = sharesOf(recipe); // offsets within one frame: the mean over frames has the same weight
-	const auto size = static_cast<std::size_t>(recipe.size);
-	const std::vector<std::size_t> offsets = shares.offsets(size * size);
-	ProgressCounter progress(run.progress, "order", variants.size());
-	for (std::size_t v = 0; v < variants.size(); ++v)
-	{
-		std::vector<Met> around;
-		for (const std::size_t offset : offsets)
-		{
-			const std::size_t other =
-				v / (size * size) * size * size + (v / size + offset / size) % size * size + (v + offset) % size;
-			if (other < v)
-			{
-				around.push_back({&variants[other], 2.0 * shares.pairs[offset] / shares.pairs[0]});
-			}
-		}
-		Pattern sorted = variants[v];
-		std::size_t next = 0;
-		for (const std::size_t u : ordered(variants[v], units, structure.centre ? 1 : 0, around))
-		{
-			for (const std::size_t i : units[u])
-			{
-				sorted.points[next] = variants[v].points[i];
-				sorted.weights[next] = variants[v].weights[i];
-				next += 1;
-			}
-		}
-		variants[v] = std::move(sorted);
-		progress.finishOne();
-	}
-}
-
-std::unique_ptr<TileProblem> sliceProblem(const Pattern& base, const TileRecipe& recipe, std::size_t variants)
-{
-	return std::make_unique<SliceTile>(base, recipe, variants);
-}
-
-Pattern slicePattern(int count)
-{
-	Pattern pattern;
-	pattern.domain = Domain::slice;
-	for (int i = 0; i < count; ++i)
-	{
-		pattern.points.emplace_back((i + 0.5) / count, periodic((i + 0.5) * kGolden), 0.0);
-		pattern.weights.push_back(1.0 / count);
-	}
-	return pattern;
-}
-
 // This work is based on: T. Gonzalez, "Clustering to minimize the maximum intercluster distance", 1985 (farthest-first order).
-
-namespace
-{
 
 // A point and its opposite move together: the distance between two such pairs is the smallest between their points.
 class Distances
@@ -391,6 +334,59 @@ std::vector<std::size_t> farthestFirst(const Layout& layout, const Points& free)
 
 } // namespace
 
+void orderProgressively(const Pattern& base, const TileRecipe& recipe, std::vector<Pattern>& variants, const RunSettings& run)
+{
+	const Recipe structure = structureOf(base);
+	const std::vector<Unit> units = unitsOf(structure, base.count());
+	const TileShares shares = sharesOf(recipe); // offsets within one frame: the mean over frames has the same weight
+	const auto size = static_cast<std::size_t>(recipe.size);
+	const std::vector<std::size_t> offsets = shares.offsets(size * size);
+	ProgressCounter progress(run.progress, "order", variants.size());
+	for (std::size_t v = 0; v < variants.size(); ++v)
+	{
+		std::vector<Met> around;
+		for (const std::size_t offset : offsets)
+		{
+			const std::size_t other =
+				v / (size * size) * size * size + (v / size + offset / size) % size * size + (v + offset) % size;
+			if (other < v)
+			{
+				around.push_back({&variants[other], 2.0 * shares.pairs[offset] / shares.pairs[0]});
+			}
+		}
+		Pattern sorted = variants[v];
+		std::size_t next = 0;
+		for (const std::size_t u : ordered(variants[v], units, structure.centre ? 1 : 0, around))
+		{
+			for (const std::size_t i : units[u])
+			{
+				sorted.points[next] = variants[v].points[i];
+				sorted.weights[next] = variants[v].weights[i];
+				next += 1;
+			}
+		}
+		variants[v] = std::move(sorted);
+		progress.finishOne();
+	}
+}
+
+std::unique_ptr<TileProblem> sliceProblem(const Pattern& base, const TileRecipe& recipe, std::size_t variants)
+{
+	return std::make_unique<SliceTile>(base, recipe, variants);
+}
+
+Pattern slicePattern(int count)
+{
+	Pattern pattern;
+	pattern.domain = Domain::slice;
+	for (int i = 0; i < count; ++i)
+	{
+		pattern.points.emplace_back((i + 0.5) / count, periodic((i + 0.5) * kGolden), 0.0);
+		pattern.weights.push_back(1.0 / count);
+	}
+	return pattern;
+}
+
 Points reorder(Order order, const Layout& layout, const Points& points)
 {
 	if (order == Order::none)
@@ -398,12 +394,7 @@ Points reorder(Order order, const Layout& layout, const Points& points)
 		return points;
 	}
 	const Points free = layout.freePoints(points);
-	Points sorted;
-	for (const std::size_t i : farthestFirst(layout, free))
-	{
-		sorted.push_back(free[i]);
-	}
-	return layout.expand(sorted);
+	return layout.expand(mapped(farthestFirst(layout, free), [&free](std::size_t i) { return free[i]; }));
 }
 
 } // namespace nook

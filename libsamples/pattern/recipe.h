@@ -72,8 +72,7 @@ void checkRecipe(const Recipe& recipe);
 // The number of starts used for `starts = 0`.
 int defaultStarts(const Recipe& recipe);
 
-// The command line that makes this pattern, without output files: "nook pattern --domain disk --count 9 --symmetric"; defaults are
-// left out.
+// The command that makes this pattern, without outputs and defaults: "nook pattern --domain disk --count 9 --symmetric".
 std::string patternCommand(const Recipe& recipe);
 
 // Names as on the command line and in JSON. namesOf<Enum>() lists them in enumerator order.

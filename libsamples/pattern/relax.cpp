@@ -72,8 +72,7 @@ public:
 		m_error = relativeSpread(m_cells.integrals);
 	}
 
-	// One force step: shortened until the error falls, else rejected; lengthened for the next time if accepted. False if no step
-	// helps.
+	// One force step, shortened until the error falls and longer the next time if accepted. False if no step helps.
 	bool repel(double& step)
 	{
 		const Points force = repulsion(m_recipe.domain, m_points);
@@ -116,198 +115,8 @@ private:
 
 constexpr std::size_t kSteps = 100; // progress steps per start: about what the methods need for 64 points
 
-} // namespace
-
-Points centroidsOf(const Layout& layout, const Cells& cells)
-{
-	Points target = cells.centroids;
-	for (glm::dvec3& p : target)
-	{
-		// If one cell covers the whole sphere, its centroid is the centre; any direction will do.
-		p = layout.domain() == Domain::sphere && glm::dot(p, p) < 1e-20 ? glm::dvec3(0, 0, 1) : placeInDomain(layout.domain(), p);
-	}
-	return layout.expand(layout.freePoints(target));
-}
-
-double greatestMove(const Points& from, const Points& to)
-{
-	double greatest = 0.0;
-	for (std::size_t i = 0; i < from.size(); ++i)
-	{
-		greatest = std::max(greatest, glm::distance(from[i], to[i]));
-	}
-	return greatest;
-}
-
-void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points, const Seen& seen)
-{
-	// Tuned on disk 9, 16, 33 and ball 12, 33 (32 starts): 100 rounds lower the plane error by at most 0.4 %, six force steps by
-	// 0.3 %; a single force step raises it by up to 5 %.
-	constexpr int kRounds = 40;
-	constexpr int kForceSteps = 3;
-	const double spacing = 1.0 / std::sqrt(static_cast<double>(points.size()));
-	double step = 0.2 * spacing;
-	Spread spread(recipe, layout, points);
-	Points best = points;
-	double best_error = spread.error();
-	const auto keepBest = [&]
-	{
-		if (spread.error() <= best_error)
-		{
-			best = spread.points();
-			best_error = spread.error();
-		}
-		if (seen)
-		{
-			seen(spread.points());
-		}
-	};
-	for (int round = 0; round < kRounds; ++round)
-	{
-		for (int k = 0; k < kForceSteps; ++k)
-		{
-			if (!spread.repel(step))
-			{
-				break;
-			}
-		}
-		keepBest();
-		// The periodic pull toward the weighted centroids.
-		Points target = centroidsOf(layout, spread.cells());
-		const double move = greatestMove(spread.points(), target);
-		spread.take(std::move(target));
-		keepBest();
-		step = std::clamp(step, 1e-4 * spacing, 0.2 * spacing);
-		if (move < 1e-4 * spacing)
-		{
-			break;
-		}
-	}
-	points = best;
-}
-
-void relaxLloyd(const Recipe& recipe, const Layout& layout, Points& points, const Seen& seen, int max_rounds)
-{
-	for (int round = 0; round < max_rounds; ++round)
-	{
-		const Points target = centroidsOf(layout, exactCells(recipe.domain, points));
-		const double move = greatestMove(points, target);
-		points = target;
-		if (seen)
-		{
-			seen(points);
-		}
-		if (move < 1e-7)
-		{
-			break;
-		}
-	}
-}
-
-double relaxSphereEnergy(const Layout& layout, double exponent, Points& points, const Seen& seen)
-{
-	// Minimises log(energy)/exponent: same minimum, but no overflow or bad scaling for high exponents.
-	Points all;
-	Points gradient_points;
-	const auto objective = [&](std::span<const double> x, std::span<double> gradient)
-	{
-		if (!layout.points(x, all))
-		{
-			return std::numeric_limits<double>::infinity();
-		}
-		gradient_points.assign(all.size(), glm::dvec3(0.0));
-		double energy = 0.0;
-		for (std::size_t i = 0; i < all.size(); ++i)
-		{
-			for (std::size_t j = i + 1; j < all.size(); ++j)
-			{
-				const glm::dvec3 d = all[i] - all[j];
-				const double d2 = glm::dot(d, d);
-				if (d2 == 0.0)
-				{
-					return std::numeric_limits<double>::infinity();
-				}
-				const double term = exponent == 1.0 ? 1.0 / std::sqrt(d2) : powOf(d2, -0.5 * exponent);
-				energy += term;
-				const glm::dvec3 pull = (exponent * term / d2) * d;
-				gradient_points[i] -= pull;
-				gradient_points[j] += pull;
-			}
-		}
-		if (energy == 0.0) // a single direction
-		{
-			return 0.0;
-		}
-		for (glm::dvec3& g : gradient_points)
-		{
-			g /= exponent * energy;
-		}
-		layout.pullBack(x, all, gradient_points, gradient);
-		return logOf(energy) / exponent;
-	};
-	std::vector<double> x = layout.variables(points);
-	LbfgsSettings settings;
-	settings.max_iterations = 1000;
-	settings.relative_decrease = 1e-12;
-	settings.seen = seenVariables(layout, seen);
-	const double value = minimise(objective, x, settings);
-	layout.points(x, all);
-	points = all;
-	return value;
-}
-
-Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)
-{
-	const auto starts = static_cast<std::size_t>(defaultStarts(recipe));
-	std::vector<Points> sets(starts);
-	std::vector<double> values(starts);
-	ProgressCounter progress(run.progress, "starts", starts * kSteps);
-	parallelFor(starts, run.threads,
-				[&](std::size_t k)
-				{
-					Random random(recipe.seed, k);
-					StartProgress start_progress(progress, kSteps);
-					const Seen seen = counted(run, start_progress, seenBy(watch, k));
-					Points& points = sets[k];
-					points = poissonPoints(layout, random);
-					const bool energy = recipe.method == Method::electro && recipe.domain == Domain::sphere;
-					if (energy)
-					{
-						values[k] = relaxSphereEnergy(layout, recipe.exponent == 0.0 ? 1.0 : recipe.exponent, points, seen);
-					}
-					else if (recipe.method == Method::electro)
-					{
-						// The paper's objective: equal integrals.
-						relaxElectro(recipe, layout, points, seen);
-						values[k] = relativeSpread(exactCells(recipe.domain, points).integrals);
-					}
-					else
-					{
-						if (recipe.method == Method::lloyd)
-						{
-							relaxLloyd(recipe, layout, points, seen);
-						}
-						else
-						{
-							relaxEqual(layout, points, 100, seen);
-						}
-						values[k] =
-							squaredError(recipe.domain, Ensemble::plane, Part::whole, points, weightsFor(recipe, layout, points));
-					}
-				});
-	std::size_t best = 0;
-	for (std::size_t k = 1; k < starts; ++k)
-	{
-		best = values[k] < values[best] ? k : best;
-	}
-	return sets[best];
-}
-
 // Gradient descent on the measure itself from many starts. The weights are functions of the points (cell integrals or the best
 // fit), and the gradient includes their derivatives.
-
-namespace
-{
 
 // Minimising plane² alone leaves cliff up to 2 % above the optimum for the same number of lines. Adding half of cliff² raises plane
 // by 0.5 to 2 % and lowers cliff by 0.5 to 1.2 % (disk 9, 16, 32).
@@ -501,6 +310,191 @@ std::vector<Candidate> finished(const Recipe& recipe, const Layout& layout, cons
 }
 
 } // namespace
+
+Points centroidsOf(const Layout& layout, const Cells& cells)
+{
+	Points target = cells.centroids;
+	for (glm::dvec3& p : target)
+	{
+		// If one cell covers the whole sphere, its centroid is the centre; any direction will do.
+		p = layout.domain() == Domain::sphere && glm::dot(p, p) < 1e-20 ? glm::dvec3(0, 0, 1) : placeInDomain(layout.domain(), p);
+	}
+	return layout.expand(layout.freePoints(target));
+}
+
+double greatestMove(const Points& from, const Points& to)
+{
+	double greatest = 0.0;
+	for (std::size_t i = 0; i < from.size(); ++i)
+	{
+		greatest = std::max(greatest, glm::distance(from[i], to[i]));
+	}
+	return greatest;
+}
+
+void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points, const Seen& seen)
+{
+	// Tuned on disk 9, 16, 33 and ball 12, 33 (32 starts): 100 rounds lower the plane error by at most 0.4 %, six force steps by
+	// 0.3 %; a single force step raises it by up to 5 %.
+	constexpr int kRounds = 40;
+	constexpr int kForceSteps = 3;
+	const double spacing = 1.0 / std::sqrt(static_cast<double>(points.size()));
+	double step = 0.2 * spacing;
+	Spread spread(recipe, layout, points);
+	Points best = points;
+	double best_error = spread.error();
+	const auto keepBest = [&]
+	{
+		if (spread.error() <= best_error)
+		{
+			best = spread.points();
+			best_error = spread.error();
+		}
+		if (seen)
+		{
+			seen(spread.points());
+		}
+	};
+	for (int round = 0; round < kRounds; ++round)
+	{
+		for (int k = 0; k < kForceSteps; ++k)
+		{
+			if (!spread.repel(step))
+			{
+				break;
+			}
+		}
+		keepBest();
+		// The periodic pull toward the weighted centroids.
+		Points target = centroidsOf(layout, spread.cells());
+		const double move = greatestMove(spread.points(), target);
+		spread.take(std::move(target));
+		keepBest();
+		step = std::clamp(step, 1e-4 * spacing, 0.2 * spacing);
+		if (move < 1e-4 * spacing)
+		{
+			break;
+		}
+	}
+	points = best;
+}
+
+void relaxLloyd(const Recipe& recipe, const Layout& layout, Points& points, const Seen& seen, int max_rounds)
+{
+	for (int round = 0; round < max_rounds; ++round)
+	{
+		const Points target = centroidsOf(layout, exactCells(recipe.domain, points));
+		const double move = greatestMove(points, target);
+		points = target;
+		if (seen)
+		{
+			seen(points);
+		}
+		if (move < 1e-7)
+		{
+			break;
+		}
+	}
+}
+
+double relaxSphereEnergy(const Layout& layout, double exponent, Points& points, const Seen& seen)
+{
+	// Minimises log(energy)/exponent: same minimum, but no overflow or bad scaling for high exponents.
+	Points all;
+	Points gradient_points;
+	const auto objective = [&](std::span<const double> x, std::span<double> gradient)
+	{
+		if (!layout.points(x, all))
+		{
+			return std::numeric_limits<double>::infinity();
+		}
+		gradient_points.assign(all.size(), glm::dvec3(0.0));
+		double energy = 0.0;
+		for (std::size_t i = 0; i < all.size(); ++i)
+		{
+			for (std::size_t j = i + 1; j < all.size(); ++j)
+			{
+				const glm::dvec3 d = all[i] - all[j];
+				const double d2 = glm::dot(d, d);
+				if (d2 == 0.0)
+				{
+					return std::numeric_limits<double>::infinity();
+				}
+				const double term = exponent == 1.0 ? 1.0 / std::sqrt(d2) : powOf(d2, -0.5 * exponent);
+				energy += term;
+				const glm::dvec3 pull = (exponent * term / d2) * d;
+				gradient_points[i] -= pull;
+				gradient_points[j] += pull;
+			}
+		}
+		if (energy == 0.0) // a single direction
+		{
+			return 0.0;
+		}
+		for (glm::dvec3& g : gradient_points)
+		{
+			g /= exponent * energy;
+		}
+		layout.pullBack(x, all, gradient_points, gradient);
+		return logOf(energy) / exponent;
+	};
+	std::vector<double> x = layout.variables(points);
+	LbfgsSettings settings;
+	settings.max_iterations = 1000;
+	settings.relative_decrease = 1e-12;
+	settings.seen = seenVariables(layout, seen);
+	const double value = minimise(objective, x, settings);
+	layout.points(x, all);
+	points = all;
+	return value;
+}
+
+Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)
+{
+	const auto starts = static_cast<std::size_t>(defaultStarts(recipe));
+	std::vector<Points> sets(starts);
+	std::vector<double> values(starts);
+	ProgressCounter progress(run.progress, "starts", starts * kSteps);
+	parallelFor(starts, run.threads,
+				[&](std::size_t k)
+				{
+					Random random(recipe.seed, k);
+					StartProgress start_progress(progress, kSteps);
+					const Seen seen = counted(run, start_progress, seenBy(watch, k));
+					Points& points = sets[k];
+					points = poissonPoints(layout, random);
+					const bool energy = recipe.method == Method::electro && recipe.domain == Domain::sphere;
+					if (energy)
+					{
+						values[k] = relaxSphereEnergy(layout, recipe.exponent == 0.0 ? 1.0 : recipe.exponent, points, seen);
+					}
+					else if (recipe.method == Method::electro)
+					{
+						// The paper's objective: equal integrals.
+						relaxElectro(recipe, layout, points, seen);
+						values[k] = relativeSpread(exactCells(recipe.domain, points).integrals);
+					}
+					else
+					{
+						if (recipe.method == Method::lloyd)
+						{
+							relaxLloyd(recipe, layout, points, seen);
+						}
+						else
+						{
+							relaxEqual(layout, points, 100, seen);
+						}
+						values[k] =
+							squaredError(recipe.domain, Ensemble::plane, Part::whole, points, weightsFor(recipe, layout, points));
+					}
+				});
+	std::size_t best = 0;
+	for (std::size_t k = 1; k < starts; ++k)
+	{
+		best = values[k] < values[best] ? k : best;
+	}
+	return sets[best];
+}
 
 double descend(const Recipe& recipe, const Layout& layout, Points& points, Minimise minimise_what, double plane_limit, int threads,
 			   const Seen& seen)

@@ -65,6 +65,160 @@ std::string tileCommandOn(const TileRecipe& recipe, const std::string& base)
 	return command;
 }
 
+// Memory per sample of the finished tile, its measurement and its text, measured: docs/measurements/patterns.md.
+constexpr uint64_t kFinishedBytes = 400;
+
+uint64_t samplesOf(const TileRecipe& recipe, std::size_t count)
+{
+	return static_cast<uint64_t>(recipe.size * recipe.size * (recipe.moves ? 1 : recipe.frames)) * count;
+}
+
+TileTime timeOf(const TileRecipe& recipe)
+{
+	return {recipe.frames, recipe.ema, recipe.moves ? tileMoves(recipe.size, recipe.frames) : std::vector<glm::ivec2>{}};
+}
+
+void checkTileFilters(const TileRecipe& recipe)
+{
+	for (const TileFilter& filter : recipe.filters)
+	{
+		if (stepsOfShares(recipe.size, filter, timeOf(recipe)) > kMaxShareSteps)
+		{
+			throw Error(ExitCode::invalid_input, "filter: found " + filter.name + " with " + std::to_string(filter.taps.size()) +
+													 " taps, expected fewer, or fewer frames, for a tile of this size");
+		}
+	}
+}
+
+void checkTime(const TileRecipe& recipe)
+{
+	if (recipe.frames < 1 || recipe.frames > kMaxTileFrames)
+	{
+		throw Error(ExitCode::usage, "frames: expected a whole number from 1 to 64");
+	}
+	if (!(recipe.ema > 0.0 && recipe.ema <= 1.0))
+	{
+		throw Error(ExitCode::usage, "ema: expected a number above 0, at most 1");
+	}
+	if (recipe.filters.empty() && (recipe.robust || recipe.frames > 1))
+	{
+		throw Error(ExitCode::usage, "robust frames: found without a filter, expected what blurs the frames, or none");
+	}
+	if (!recipe.filters.empty() && recipe.kind != TileKind::points)
+	{
+		throw Error(ExitCode::usage, "filter: found with the kind " + std::string(nameOf(recipe.kind)) +
+										 ", expected variants with points of their own");
+	}
+	if (recipe.progressive && recipe.kind != TileKind::points)
+	{
+		throw Error(ExitCode::usage, "progressive: found with the kind " + std::string(nameOf(recipe.kind)) +
+										 ", whose order is the pattern's, expected variants with points of their own");
+	}
+	if (recipe.moves && (recipe.frames < 2 || recipe.frames > recipe.size * recipe.size))
+	{
+		throw Error(ExitCode::usage, "moves: found " + std::to_string(recipe.frames) + " frames, expected from 2 to " +
+										 std::to_string(recipe.size * recipe.size) + ", the pixels of the tile");
+	}
+}
+
+void roundTile(PatternTile& tile)
+{
+	for (Pattern& variant : tile.variants)
+	{
+		for (glm::dvec3& p : variant.points)
+		{
+			p = glm::dvec3(roundToFloat(p.x), roundToFloat(p.y), roundToFloat(p.z));
+			p = tile.domain == Domain::slice ? glm::dvec3(p.x < 1.0 ? p.x : 0.0, p.y < 1.0 ? p.y : 0.0, 0.0) : p;
+		}
+		for (double& w : variant.weights)
+		{
+			w = roundToFloat(w);
+		}
+	}
+}
+
+// Repeats a tile to a multiple of its size.
+PatternTile repeated(const PatternTile& small, int size)
+{
+	PatternTile tile = small;
+	tile.size = size;
+	tile.variants.clear();
+	for (int v = 0; v < size * size * layersOf(small); ++v)
+	{
+		const int layer = v / (size * size);
+		const int from = (layer * small.size + v / size % size % small.size) * small.size + v % size % small.size;
+		tile.variants.push_back(small.variants[static_cast<std::size_t>(from)]);
+	}
+	return tile;
+}
+
+// The squared error to be minimised, without the single variants' part: exact when it is reported, else approximate.
+double seenError(const PatternTile& tile, const TileShares& seen, int threads)
+{
+	Points points;
+	std::vector<double> weights;
+	for (const Pattern& variant : tile.variants)
+	{
+		points.insert(points.end(), variant.points.begin(), variant.points.end());
+		weights.insert(weights.end(), variant.weights.begin(), variant.weights.end());
+	}
+	EnergyGradient unused;
+	return stepsOfError(seen, tile.variants.front().count()) <= kMaxShareSteps
+			   ? tileSquaredError(tile.domain, seen, points, weights, nullptr, threads)
+			   : TileMoments(tile.domain, seen)(points, weights, unused, threads);
+}
+
+// The best tile made of copies of a smaller one; none if there is no smaller one.
+std::optional<PatternTile> bestCopies(const std::vector<PatternTile>& smaller, const TileRecipe& recipe, int threads)
+{
+	std::optional<PatternTile> best;
+	double least = std::numeric_limits<double>::infinity();
+	for (const PatternTile& small : smaller)
+	{
+		if (recipe.size % small.size == 0)
+		{
+			PatternTile copies = repeated(small, recipe.size);
+			const double error = seenError(copies, seenShares(recipe), threads);
+			best = error < least ? std::move(copies) : std::move(best);
+			least = std::min(least, error);
+		}
+	}
+	return best;
+}
+
+// Sizes to make in turn: those that divide the recipe's size and have its frames; its own last. With frames, middle sizes above 4
+// are skipped: a 6 × 6 tile of 16 samples over 8 frames takes eight times as long as the 12 × 12 tile that copies it.
+std::vector<int> sizesOf(const TileRecipe& recipe)
+{
+	std::vector<int> sizes;
+	for (int size = 2; recipe.kind == TileKind::points && size < recipe.size; ++size)
+	{
+		if (recipe.size % size == 0 && (size <= kLargestAlone || recipe.frames == 1) &&
+			(!recipe.moves || recipe.frames <= size * size))
+		{
+			sizes.push_back(size);
+		}
+	}
+	sizes.push_back(recipe.size);
+	return sizes;
+}
+
+// One tile by descent, or the copies if it is no better.
+PatternTile descendedTile(const Pattern& base, const TileRecipe& recipe, const std::optional<PatternTile>& copies,
+						  const RunSettings& run)
+{
+	const std::span<const Pattern> near =
+		copies && recipe.size > kLargestAlone ? std::span<const Pattern>(copies->variants) : std::span<const Pattern>{};
+	PatternTile tile = recipe.kind == TileKind::points ? pointsTile(base, recipe, near, run) : transformedTile(base, recipe);
+	tile.domain = base.domain;
+	tile.size = recipe.size;
+	tile.frames = recipe.frames;
+	tile.moves = timeOf(recipe).moves;
+	roundTile(tile);
+	const TileShares seen = seenShares(recipe);
+	return copies && seenError(*copies, seen, run.threads) < seenError(tile, seen, run.threads) ? *copies : tile;
+}
+
 } // namespace
 
 double lambdaOf(const TileRecipe& recipe)
@@ -103,11 +257,6 @@ double tileError(Domain domain, const VariantUnion& all, std::size_t variants, d
 		}
 	}
 	return value;
-}
-
-TileTime timeOf(const TileRecipe& recipe)
-{
-	return {recipe.frames, recipe.ema, recipe.moves ? tileMoves(recipe.size, recipe.frames) : std::vector<glm::ivec2>{}};
 }
 
 TileShares seenShares(const TileRecipe& recipe)
@@ -173,62 +322,6 @@ int variantOfFrame(const PatternTile& tile, int frame)
 	const glm::ivec2 move = tile.moves[static_cast<std::size_t>(f)];
 	return move.y % tile.size * tile.size + move.x % tile.size;
 }
-
-namespace
-{
-
-// Memory per sample of the finished tile, its measurement and its text, measured: docs/measurements/patterns.md.
-constexpr uint64_t kFinishedBytes = 400;
-
-uint64_t samplesOf(const TileRecipe& recipe, std::size_t count)
-{
-	return static_cast<uint64_t>(recipe.size * recipe.size * (recipe.moves ? 1 : recipe.frames)) * count;
-}
-
-void checkTileFilters(const TileRecipe& recipe)
-{
-	for (const TileFilter& filter : recipe.filters)
-	{
-		if (stepsOfShares(recipe.size, filter, timeOf(recipe)) > kMaxShareSteps)
-		{
-			throw Error(ExitCode::invalid_input, "filter: found " + filter.name + " with " + std::to_string(filter.taps.size()) +
-													 " taps, expected fewer, or fewer frames, for a tile of this size");
-		}
-	}
-}
-
-void checkTime(const TileRecipe& recipe)
-{
-	if (recipe.frames < 1 || recipe.frames > kMaxTileFrames)
-	{
-		throw Error(ExitCode::usage, "frames: expected a whole number from 1 to 64");
-	}
-	if (!(recipe.ema > 0.0 && recipe.ema <= 1.0))
-	{
-		throw Error(ExitCode::usage, "ema: expected a number above 0, at most 1");
-	}
-	if (recipe.filters.empty() && (recipe.robust || recipe.frames > 1))
-	{
-		throw Error(ExitCode::usage, "robust frames: found without a filter, expected what blurs the frames, or none");
-	}
-	if (!recipe.filters.empty() && recipe.kind != TileKind::points)
-	{
-		throw Error(ExitCode::usage, "filter: found with the kind " + std::string(nameOf(recipe.kind)) +
-										 ", expected variants with points of their own");
-	}
-	if (recipe.progressive && recipe.kind != TileKind::points)
-	{
-		throw Error(ExitCode::usage, "progressive: found with the kind " + std::string(nameOf(recipe.kind)) +
-										 ", whose order is the pattern's, expected variants with points of their own");
-	}
-	if (recipe.moves && (recipe.frames < 2 || recipe.frames > recipe.size * recipe.size))
-	{
-		throw Error(ExitCode::usage, "moves: found " + std::to_string(recipe.frames) + " frames, expected from 2 to " +
-										 std::to_string(recipe.size * recipe.size) + ", the pixels of the tile");
-	}
-}
-
-} // namespace
 
 uint64_t tileMemory(const TileRecipe& recipe, const Pattern& base, int threads)
 {
@@ -303,110 +396,6 @@ std::string sliceTileCommand(const TileRecipe& recipe, std::size_t count)
 {
 	return tileCommandOn(recipe, "--domain slice --count " + std::to_string(count));
 }
-
-namespace
-{
-
-void roundTile(PatternTile& tile)
-{
-	for (Pattern& variant : tile.variants)
-	{
-		for (glm::dvec3& p : variant.points)
-		{
-			p = glm::dvec3(roundToFloat(p.x), roundToFloat(p.y), roundToFloat(p.z));
-			p = tile.domain == Domain::slice ? glm::dvec3(p.x < 1.0 ? p.x : 0.0, p.y < 1.0 ? p.y : 0.0, 0.0) : p;
-		}
-		for (double& w : variant.weights)
-		{
-			w = roundToFloat(w);
-		}
-	}
-}
-
-// Repeats a tile to a multiple of its size.
-PatternTile repeated(const PatternTile& small, int size)
-{
-	PatternTile tile = small;
-	tile.size = size;
-	tile.variants.clear();
-	for (int v = 0; v < size * size * layersOf(small); ++v)
-	{
-		const int layer = v / (size * size);
-		const int from = (layer * small.size + v / size % size % small.size) * small.size + v % size % small.size;
-		tile.variants.push_back(small.variants[static_cast<std::size_t>(from)]);
-	}
-	return tile;
-}
-
-// The squared error that the tile is optimised for, without the single variants' part: exact when it is reported, approximate
-// otherwise.
-double seenError(const PatternTile& tile, const TileShares& seen, int threads)
-{
-	Points points;
-	std::vector<double> weights;
-	for (const Pattern& variant : tile.variants)
-	{
-		points.insert(points.end(), variant.points.begin(), variant.points.end());
-		weights.insert(weights.end(), variant.weights.begin(), variant.weights.end());
-	}
-	EnergyGradient unused;
-	return stepsOfError(seen, tile.variants.front().count()) <= kMaxShareSteps
-			   ? tileSquaredError(tile.domain, seen, points, weights, nullptr, threads)
-			   : TileMoments(tile.domain, seen)(points, weights, unused, threads);
-}
-
-// The best tile made of copies of a smaller one; none if there is no smaller one.
-std::optional<PatternTile> bestCopies(const std::vector<PatternTile>& smaller, const TileRecipe& recipe, int threads)
-{
-	std::optional<PatternTile> best;
-	double least = std::numeric_limits<double>::infinity();
-	for (const PatternTile& small : smaller)
-	{
-		if (recipe.size % small.size == 0)
-		{
-			PatternTile copies = repeated(small, recipe.size);
-			const double error = seenError(copies, seenShares(recipe), threads);
-			best = error < least ? std::move(copies) : std::move(best);
-			least = std::min(least, error);
-		}
-	}
-	return best;
-}
-
-// Sizes to make in turn: those that divide the recipe's size and have its frames; its own last. With frames, middle sizes above 4
-// are skipped: a 6 × 6 tile of 16 samples over 8 frames takes eight times as long as the 12 × 12 tile that copies it.
-std::vector<int> sizesOf(const TileRecipe& recipe)
-{
-	std::vector<int> sizes;
-	for (int size = 2; recipe.kind == TileKind::points && size < recipe.size; ++size)
-	{
-		if (recipe.size % size == 0 && (size <= kLargestAlone || recipe.frames == 1) &&
-			(!recipe.moves || recipe.frames <= size * size))
-		{
-			sizes.push_back(size);
-		}
-	}
-	sizes.push_back(recipe.size);
-	return sizes;
-}
-
-// One tile by descent, or the copies if it is no better.
-PatternTile descendedTile(const Pattern& base, const TileRecipe& recipe, const std::optional<PatternTile>& copies,
-						  const RunSettings& run)
-{
-	const std::span<const Pattern> near =
-		copies && recipe.size > kLargestAlone ? std::span<const Pattern>(copies->variants) : std::span<const Pattern>{};
-	PatternTile tile = recipe.kind == TileKind::points ? pointsTile(base, recipe, near, run) : transformedTile(base, recipe);
-	tile.domain = base.domain;
-	tile.size = recipe.size;
-	tile.frames = recipe.frames;
-	tile.moves = timeOf(recipe).moves;
-	roundTile(tile);
-	const TileShares seen = seenShares(recipe);
-	return copies && seenError(*copies, seen, run.threads) < seenError(tile, seen, run.threads) ? *copies : tile;
-}
-
-} // namespace
 
 PatternTile generateTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run)
 {

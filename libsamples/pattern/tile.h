@@ -68,8 +68,7 @@ int variantOfFrame(const PatternTile& tile, int frame);
 
 void checkTileRecipe(const TileRecipe& recipe, Domain domain);
 
-// Throws Error: invalid_input if a filter has too many taps for a tile of this size; runtime if the estimated memory exceeds
-// `memory_bytes` (0: no limit).
+// Throws Error: invalid_input if a filter has too many taps for the tile; runtime if it may take more than memory_bytes (0: any).
 void checkTileSize(const TileRecipe& recipe, const Pattern& base, uint64_t memory_bytes, int threads);
 
 // Upper estimate of the memory for making the tile, including its text.

@@ -192,12 +192,8 @@ std::vector<glm::ivec2> tileMoves(int size, int frames)
 	{
 		width += 1;
 	}
-	std::vector<glm::ivec2> moves;
-	for (int f = 0; f < frames; ++f)
-	{
-		moves.emplace_back(f % width, f / width);
-	}
-	return moves;
+	return listOf(static_cast<std::size_t>(frames),
+				  [width](std::size_t f) { return glm::ivec2(static_cast<int>(f) % width, static_cast<int>(f) / width); });
 }
 
 TileShares sharesOf(int size, const TileFilter& filter, const TileTime& time, int last, glm::ivec2 pan)

@@ -21,8 +21,7 @@ namespace nook
 namespace
 {
 
-// Tuned on nine lines, 12 × 12 pixels, 8 frames behind binomial:3: with degree 12 the error behind filter and mean is a tenth
-// larger.
+// Tuned on nine lines, 12 × 12 pixels, 8 frames, binomial:3: degree 12 has a tenth more error behind filter and mean.
 constexpr int kPlanarDegree = 14;
 constexpr int kSpatialDegree = 8;
 constexpr int kNodes = 150;                 // in a quarter of the domain, at which the form stays below the kernel

@@ -72,8 +72,7 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, std::span<
 // Variants that are rotated or reflected copies of the base.
 PatternTile transformedTile(const Pattern& base, const TileRecipe& recipe);
 
-// Approximates a large tile's squared error behind a filter and a mean over frames in time linear in the samples, not in the pairs
-// of samples.
+// Approximates a large tile's squared error behind a filter and a mean over frames in time linear in the samples.
 
 // Memory of one evaluation per variant, in addition to points, weights and their gradient.
 std::size_t momentBytes(Domain domain, const TileShares& shares);
@@ -87,8 +86,7 @@ public:
 	// `shares` as for tileSquaredError.
 	TileMoments(Domain domain, const TileShares& shares);
 
-	// Like tileSquaredError, with its gradient: exact among the samples of one variant, by moments between variants. `threads`
-	// never changes the result.
+	// Like tileSquaredError, with its gradient: exact within a variant, by moments between them, for any number of threads.
 	double operator()(std::span<const glm::dvec3> points, std::span<const double> weights, EnergyGradient& gradient, int threads);
 
 private:

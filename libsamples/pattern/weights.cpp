@@ -110,71 +110,8 @@ int mostWanted(const Vector& slope, double multiplier, const Vector& w, const st
 	return wanted;
 }
 
-} // namespace
-
-std::vector<double> fittedWeights(Domain domain, std::span<const glm::dvec3> points)
-{
-	// Eigen chooses block sizes by the processor's caches; fixed sizes keep the sums, and so the bytes, the same everywhere.
-	Eigen::setCpuCacheSizes(32 * 1024, 512 * 1024, 4 * 1024 * 1024);
-	const QuadraticForm form = quadraticForm(domain, Ensemble::plane, points);
-	const auto n = static_cast<Eigen::Index>(points.size());
-	Matrix a(n, n);
-	Vector l(n);
-	for (Eigen::Index i = 0; i < n; ++i)
-	{
-		l(i) = form.linear[static_cast<std::size_t>(i)];
-		for (Eigen::Index j = 0; j < n; ++j)
-		{
-			// −pairs is positive definite only for weights of sum 0; adding a constant makes it so for all and shifts the form by a
-			// constant. The diagonal gets 1e-13 so that duplicate points share their weight.
-			a(i, j) = 1.0 - form.pairs[static_cast<std::size_t>(i * n + j)] + (i == j ? 1e-13 : 0.0);
-		}
-	}
-	std::vector<int> chosen(points.size());
-	std::iota(chosen.begin(), chosen.end(), 0);
-	Vector w = Vector::Constant(n, 1.0 / static_cast<double>(n));
-	for (int round = 0; round < 10 * static_cast<int>(n) + 10; ++round)
-	{
-		const Solution solution = solveOn(a, l, chosen);
-		if (!stepTowards(solution, w, chosen))
-		{
-			continue;
-		}
-		const int wanted = mostWanted(a * w + l, solution.multiplier, w, chosen);
-		if (wanted < 0)
-		{
-			break;
-		}
-		chosen.insert(std::lower_bound(chosen.begin(), chosen.end(), wanted), wanted);
-	}
-	return {w.data(), w.data() + n};
-}
-
-std::vector<double> weightsFor(const Recipe& recipe, const Layout& layout, std::span<const glm::dvec3> points)
-{
-	std::vector<double> weights(points.size(), 1.0 / static_cast<double>(points.size()));
-	if (recipe.weights == WeightRule::voronoi && recipe.method != Method::equal)
-	{
-		weights = exactCells(recipe.domain, points).integrals;
-	}
-	else if (recipe.weights == WeightRule::fitted)
-	{
-		weights = fittedWeights(recipe.domain, points);
-	}
-	layout.symmetrise(weights);
-	const double sum = sumOver(weights);
-	for (double& w : weights)
-	{
-		w /= sum;
-	}
-	return weights;
-}
-
 // This work is based on: J. Kitagawa, Q. Mérigot, B. Thibert, "Convergence of a Newton algorithm for semi-discrete optimal
 // transport", 2019, and F. de Goes et al., "Blue noise through optimal transport", 2012.
-
-namespace
-{
 
 struct Residual
 {
@@ -256,6 +193,64 @@ std::vector<double> newtonStep(Domain domain, std::span<const glm::dvec3> points
 }
 
 } // namespace
+
+std::vector<double> fittedWeights(Domain domain, std::span<const glm::dvec3> points)
+{
+	// Eigen chooses block sizes by the processor's caches; fixed sizes keep the sums, and so the bytes, the same everywhere.
+	Eigen::setCpuCacheSizes(32 * 1024, 512 * 1024, 4 * 1024 * 1024);
+	const QuadraticForm form = quadraticForm(domain, Ensemble::plane, points);
+	const auto n = static_cast<Eigen::Index>(points.size());
+	Matrix a(n, n);
+	Vector l(n);
+	for (Eigen::Index i = 0; i < n; ++i)
+	{
+		l(i) = form.linear[static_cast<std::size_t>(i)];
+		for (Eigen::Index j = 0; j < n; ++j)
+		{
+			// −pairs is positive definite only for weights of sum 0; adding a constant makes it so for all and shifts the form by a
+			// constant. The diagonal gets 1e-13 so that duplicate points share their weight.
+			a(i, j) = 1.0 - form.pairs[static_cast<std::size_t>(i * n + j)] + (i == j ? 1e-13 : 0.0);
+		}
+	}
+	std::vector<int> chosen(points.size());
+	std::iota(chosen.begin(), chosen.end(), 0);
+	Vector w = Vector::Constant(n, 1.0 / static_cast<double>(n));
+	for (int round = 0; round < 10 * static_cast<int>(n) + 10; ++round)
+	{
+		const Solution solution = solveOn(a, l, chosen);
+		if (!stepTowards(solution, w, chosen))
+		{
+			continue;
+		}
+		const int wanted = mostWanted(a * w + l, solution.multiplier, w, chosen);
+		if (wanted < 0)
+		{
+			break;
+		}
+		chosen.insert(std::lower_bound(chosen.begin(), chosen.end(), wanted), wanted);
+	}
+	return {w.data(), w.data() + n};
+}
+
+std::vector<double> weightsFor(const Recipe& recipe, const Layout& layout, std::span<const glm::dvec3> points)
+{
+	std::vector<double> weights(points.size(), 1.0 / static_cast<double>(points.size()));
+	if (recipe.weights == WeightRule::voronoi && recipe.method != Method::equal)
+	{
+		weights = exactCells(recipe.domain, points).integrals;
+	}
+	else if (recipe.weights == WeightRule::fitted)
+	{
+		weights = fittedWeights(recipe.domain, points);
+	}
+	layout.symmetrise(weights);
+	const double sum = sumOver(weights);
+	for (double& w : weights)
+	{
+		w /= sum;
+	}
+	return weights;
+}
 
 std::vector<double> equalisingPowers(Domain domain, std::span<const glm::dvec3> points)
 {

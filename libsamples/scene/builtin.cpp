@@ -48,6 +48,48 @@ std::size_t triangleCount(std::string_view text, const Builtin& level)
 	return count;
 }
 
+// Test cases with closed forms. Each stands on its own square of floor, 100 m wide, centred 100 m from the next one, so that with a
+// radius of up to 90 m only one case is in reach. Visibility (cosine-weighted, infinite reach, near the centre of each square) up
+// to terms of (x / 50 m)²:
+//
+// - case   | centre         | geometry                                           | visibility of the floor
+// - ------ | -------------- | -------------------------------------------------- | -----------------------------------------------
+// - floor  | (0, 0, 0)      | none                                               | 1
+// - wall   | (150, 0, 0)    | a wall at z = 0, 50 m high, its face towards +z    | ½ (1 + z / √(z² + 50²)) at z > 0: ½ at its foot
+// - step   | (300, 0, 0)    | floor behind z = 0 is 0.5 m higher                 | ½ (1 + z / √(z² + 0.5²)) at z > 0
+// - sphere | (0, 0, −150)   | a sphere of radius 1 m resting on the centre       | 1 − 1 / (1 + x²)^(3/2) at x from the centre
+// - disk   | (150, 0, −150) | a level disk of radius 1 m, its underside 1 m high | ½ = 1 − 1² / (1² + 1²) at the centre
+// - slope  | (300, 0, −150) | floor that rises by 30° towards −z                 | 1
+//
+// The wall itself has visibility ½ (1 + y / √(y² + 50²)) at height y.
+// The sphere's vertices lie on the sphere, 192 around, so its faces are up to 1.4e-4 m inside; the disk's 1024 corners are on the
+// circle.
+
+constexpr double kHalf = 50.0;
+constexpr double kThick = 1.0;
+
+void addFloor(LevelBuilder& builder, const Frame& frame)
+{
+	addBox(builder, frame, {-kHalf, -kThick, -kHalf}, {kHalf, 0.0, kHalf});
+}
+
+Frame slopeFrame()
+{
+	const SinCos rise = sinCosOf(kPi / 6.0);
+	Frame frame = frameAt({300.0, 0.0, -150.0});
+	frame.y = {0.0, rise.cos, rise.sin};
+	frame.z = {0.0, -rise.sin, rise.cos};
+	return frame;
+}
+
+// Looks at the centre of the slope from 3 m away, at that angle to its surface.
+void addSlopeCamera(LevelBuilder& builder, const std::string& name, double above_deg, double fov_y_deg)
+{
+	const Frame frame = slopeFrame();
+	const SinCos above = sinCosOf(above_deg * (kPi / 180.0));
+	builder.addCamera(name, frame.point({0.0, 3.0 * above.sin, 3.0 * above.cos}), frame.at, fov_y_deg);
+}
+
 } // namespace
 
 std::vector<std::string_view> builtinNames()
@@ -107,53 +149,6 @@ Level makeCornell()
 	builder.addCamera("corner", {-2.3, 0.9, -0.7}, {0.6, 1.3, -5.0}, 65.0);
 	return builder.finish();
 }
-
-// Test cases with closed forms. Each stands on its own square of floor, 100 m wide, centred 100 m from the next one, so that with a
-// radius of up to 90 m only one case is in reach. Visibility (cosine-weighted, infinite reach, near the centre of each square) up
-// to terms of (x / 50 m)²:
-//
-// - case   | centre         | geometry                                           | visibility of the floor
-// - ------ | -------------- | -------------------------------------------------- | -----------------------------------------------
-// - floor  | (0, 0, 0)      | none                                               | 1
-// - wall   | (150, 0, 0)    | a wall at z = 0, 50 m high, its face towards +z    | ½ (1 + z / √(z² + 50²)) at z > 0: ½ at its foot
-// - step   | (300, 0, 0)    | floor behind z = 0 is 0.5 m higher                 | ½ (1 + z / √(z² + 0.5²)) at z > 0
-// - sphere | (0, 0, −150)   | a sphere of radius 1 m resting on the centre       | 1 − 1 / (1 + x²)^(3/2) at x from the centre
-// - disk   | (150, 0, −150) | a level disk of radius 1 m, its underside 1 m high | ½ = 1 − 1² / (1² + 1²) at the centre
-// - slope  | (300, 0, −150) | floor that rises by 30° towards −z                 | 1
-//
-// The wall itself has visibility ½ (1 + y / √(y² + 50²)) at height y.
-// The sphere's vertices lie on the sphere, 192 around, so its faces are up to 1.4e-4 m inside; the disk's 1024 corners are on the
-// circle.
-
-namespace
-{
-
-constexpr double kHalf = 50.0;
-constexpr double kThick = 1.0;
-
-void addFloor(LevelBuilder& builder, const Frame& frame)
-{
-	addBox(builder, frame, {-kHalf, -kThick, -kHalf}, {kHalf, 0.0, kHalf});
-}
-
-Frame slopeFrame()
-{
-	const SinCos rise = sinCosOf(kPi / 6.0);
-	Frame frame = frameAt({300.0, 0.0, -150.0});
-	frame.y = {0.0, rise.cos, rise.sin};
-	frame.z = {0.0, -rise.sin, rise.cos};
-	return frame;
-}
-
-// Looks at the centre of the slope from 3 m away, at that angle to its surface.
-void addSlopeCamera(LevelBuilder& builder, const std::string& name, double above_deg, double fov_y_deg)
-{
-	const Frame frame = slopeFrame();
-	const SinCos above = sinCosOf(above_deg * (kPi / 180.0));
-	builder.addCamera(name, frame.point({0.0, 3.0 * above.sin, 3.0 * above.cos}), frame.at, fov_y_deg);
-}
-
-} // namespace
 
 Level makeNulls()
 {

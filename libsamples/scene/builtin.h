@@ -16,8 +16,7 @@ inline constexpr std::string_view kBuiltinPrefix = "builtin:";
 // "cornell", "courtyard", …: valid names after the prefix.
 std::vector<std::string_view> builtinNames();
 
-// `name` without the prefix; "heightfield:1000000" and "cave:20000" ask for at least that many triangles. Throws Error (usage) for
-// another name.
+// `name` without prefix; "heightfield:1000000", "cave:20000": at least that many triangles. Throws Error (usage) for others.
 Level builtinLevel(std::string_view name);
 
 // The built-in levels, one function and one file each.

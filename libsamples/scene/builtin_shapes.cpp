@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/builtin_shapes.h"
 
+#include "core/lists.h"
 #include "core/math.h"
 
 #include <glm/geometric.hpp>
@@ -53,14 +54,8 @@ bool touches(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d)
 
 bool touchesAny(const std::vector<Corner>& ring, glm::dvec2 a, glm::dvec2 b)
 {
-	for (std::size_t i = 0; i < ring.size(); ++i)
-	{
-		if (touches(a, b, ring[i].at, ring[(i + 1) % ring.size()].at))
-		{
-			return true;
-		}
-	}
-	return false;
+	return !indicesWhere(ring.size(), [&](std::size_t i) { return touches(a, b, ring[i].at, ring[(i + 1) % ring.size()].at); })
+				.empty();
 }
 
 // True if the line from corner i to `to` starts inside the ring: a point that a bridge visits twice has two corners.

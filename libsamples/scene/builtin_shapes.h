@@ -93,8 +93,7 @@ private:
 
 void addBox(LevelBuilder& builder, const Frame& frame, glm::dvec3 least, glm::dvec3 most);
 
-// Extrudes the polygon in the frame's x and y from z = from to z = to, from < to. Edges of less than 40°
-// are smooth.
+// Extrudes the polygon in the frame's x and y from z = from to z = to, from < to. Edges of less than 40° are smooth.
 void addExtrusion(LevelBuilder& builder, const Frame& frame, const std::vector<Contour>& contours, double from, double to);
 
 // Rotates a profile (radius, height) about the frame's y. It either runs from the axis, below, outward and up to the axis again, or

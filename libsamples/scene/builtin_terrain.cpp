@@ -61,8 +61,7 @@ double noiseAt(glm::dvec2 p, uint32_t seed)
 // Metres. Leaves out ridges too narrow for a grid of that step.
 double heightAt(glm::dvec2 p, double step)
 {
-	// Broad hills and valleys, then ridges: 1 − |noise| is sharp where the noise changes sign; each octave is weighted by the
-	// previous one.
+	// Broad hills and valleys, then ridges, sharp where the noise changes sign; each octave is weighted by the previous one.
 	const double hills = 26.0 * noiseAt(p * (1.0 / 210.0), 1) + 9.0 * noiseAt(p * (1.0 / 90.0), 2);
 	double ridges = 0.0;
 	double weight = 1.0;
@@ -224,39 +223,9 @@ void addUnderside(LevelBuilder& builder, const Grid& grid, std::size_t cells)
 	}
 }
 
-} // namespace
-
-Level makeHeightfield(std::size_t triangles)
-{
-	std::size_t cells = 1;
-	while (2 * cells * cells < triangles)
-	{
-		cells += 1;
-	}
-	const Grid grid(cells);
-	LevelBuilder builder;
-	builder.reserve((cells + 1) * (cells + 1) + 24 * cells + 1, 2 * cells * cells + 12 * cells);
-	builder.beginMesh("ground", builder.addMaterial("ground"));
-	addGround(builder, grid, cells);
-	addUnderside(builder, grid, cells);
-
-	const auto look = [&](const char* name, glm::dvec3 eye, glm::dvec3 target)
-	{
-		builder.addCamera(name, {eye.x, eye.y + grid.groundNear(eye.x, eye.z), eye.z},
-						  {target.x, target.y + grid.groundNear(target.x, target.z), target.z});
-	};
-	look("main", {40.0, 12.0, 200.0}, {-20.0, 0.0, 20.0});
-	look("valley", {-120.0, 2.0, 60.0}, {0.0, 5.0, -60.0});
-	look("above", {0.0, 220.0, 250.0}, {0.0, 0.0, 0.0});
-	return builder.finish();
-}
-
 // A tunnel of 60 m through a rock, with halls and narrow passages: as dense and as uneven as a scan. One closed surface: the wall,
 // out at one mouth, along the outside of the rock and in at the other mouth. This work is based on: K. Perlin, "Improving Noise",
 // 2002 (gradients at lattice points, smoothly interpolated).
-
-namespace
-{
 
 constexpr double kTunnelHalf = 30.0;  // m
 constexpr double kTunnelRadius = 3.4; // mean radius of the tunnel, m
@@ -355,26 +324,17 @@ struct Station
 std::vector<Station> stationsOf(std::size_t along, std::size_t mouth, std::size_t back)
 {
 	std::vector<Station> stations;
-	const auto share = [](std::size_t i, std::size_t count)
+	const auto addSide = [&stations](std::size_t count, const auto& stationAt)
 	{
-		return static_cast<double>(i) / static_cast<double>(count);
+		for (std::size_t i = 0; i < count; ++i)
+		{
+			stations.push_back(stationAt(static_cast<double>(i) / static_cast<double>(count)));
+		}
 	};
-	for (std::size_t i = 0; i < along; ++i)
-	{
-		stations.push_back({kTunnelHalf * (2.0 * share(i, along) - 1.0), 0.0});
-	}
-	for (std::size_t i = 0; i < mouth; ++i)
-	{
-		stations.push_back({kTunnelHalf, share(i, mouth)});
-	}
-	for (std::size_t i = 0; i < back; ++i)
-	{
-		stations.push_back({kTunnelHalf * (1.0 - 2.0 * share(i, back)), 1.0});
-	}
-	for (std::size_t i = 0; i < mouth; ++i)
-	{
-		stations.push_back({-kTunnelHalf, 1.0 - share(i, mouth)});
-	}
+	addSide(along, [](double share) { return Station{kTunnelHalf * (2.0 * share - 1.0), 0.0}; });
+	addSide(mouth, [](double share) { return Station{kTunnelHalf, share}; });
+	addSide(back, [](double share) { return Station{kTunnelHalf * (1.0 - 2.0 * share), 1.0}; });
+	addSide(mouth, [](double share) { return Station{-kTunnelHalf, 1.0 - share}; });
 	return stations;
 }
 
@@ -453,6 +413,31 @@ private:
 };
 
 } // namespace
+
+Level makeHeightfield(std::size_t triangles)
+{
+	std::size_t cells = 1;
+	while (2 * cells * cells < triangles)
+	{
+		cells += 1;
+	}
+	const Grid grid(cells);
+	LevelBuilder builder;
+	builder.reserve((cells + 1) * (cells + 1) + 24 * cells + 1, 2 * cells * cells + 12 * cells);
+	builder.beginMesh("ground", builder.addMaterial("ground"));
+	addGround(builder, grid, cells);
+	addUnderside(builder, grid, cells);
+
+	const auto look = [&](const char* name, glm::dvec3 eye, glm::dvec3 target)
+	{
+		builder.addCamera(name, {eye.x, eye.y + grid.groundNear(eye.x, eye.z), eye.z},
+						  {target.x, target.y + grid.groundNear(target.x, target.z), target.z});
+	};
+	look("main", {40.0, 12.0, 200.0}, {-20.0, 0.0, 20.0});
+	look("valley", {-120.0, 2.0, 60.0}, {0.0, 5.0, -60.0});
+	look("above", {0.0, 220.0, 250.0}, {0.0, 0.0, 0.0});
+	return builder.finish();
+}
 
 Level makeCave(std::size_t triangles)
 {

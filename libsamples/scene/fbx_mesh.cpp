@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/fbx.h"
 
+#include "core/lists.h"
+
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
@@ -30,13 +32,8 @@ std::vector<glm::dvec3> vectorsBelow(const FbxObjects& objects, const FbxObject&
 		objects.file().fail(FbxObjects::placeOf(object) + ": " + std::string(name), std::to_string(numbers.size()) + " numbers",
 							"three for each point");
 	}
-	std::vector<glm::dvec3> vectors;
-	vectors.reserve(numbers.size() / 3);
-	for (std::size_t i = 0; i < numbers.size(); i += 3)
-	{
-		vectors.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
-	}
-	return vectors;
+	return listOf(numbers.size() / 3,
+				  [&numbers](std::size_t i) { return glm::dvec3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]); });
 }
 
 FbxLayer::By mappingOf(const std::string& name)

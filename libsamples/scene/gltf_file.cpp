@@ -179,9 +179,8 @@ std::optional<std::string> dataOf(const std::string& uri, const JsonValue& item)
 	const std::optional<std::vector<uint8_t>> bytes = bytesOfBase64(text);
 	if (!bytes)
 	{
-		const auto odd = std::find_if(uri.begin() + static_cast<std::ptrdiff_t>(comma) + 1, uri.end(),
-									  [](char c) { return digitOfBase64(c) >= kBase64.size(); });
-		item.fail("uri", "character " + std::to_string(odd - uri.begin()) + " that is not base64", "letters, digits, + and /");
+		const std::size_t odd = std::min(uri.find_first_not_of(kBase64, comma + 1), uri.size());
+		item.fail("uri", "character " + std::to_string(odd) + " that is not base64", "letters, digits, + and /");
 	}
 	return std::string(bytes->begin(), bytes->end());
 }

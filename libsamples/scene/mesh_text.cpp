@@ -39,80 +39,6 @@ bool isBlank(char c)
 	return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-} // namespace
-
-std::optional<double> numberOf(std::string_view word)
-{
-	const double sign = word.starts_with('-') ? -1.0 : 1.0;
-	const std::string_view rest = withoutSign(word);
-	double value = 0.0;
-	const auto [end, wrong] = readDecimal(rest.data(), rest.data() + rest.size(), value);
-	const bool whole = end == rest.data() + rest.size() && rest.find_first_of("0123456789.") == 0;
-	if (whole && wrong == std::errc::result_out_of_range)
-	{
-		const std::size_t exponent = rest.find_first_of("eE");
-		const bool small = exponent == std::string_view::npos ? rest.find_first_not_of('0') == rest.find('.')
-															  : rest.substr(exponent + 1).starts_with('-');
-		return small ? 0.0 : sign * std::numeric_limits<double>::infinity();
-	}
-	if (whole && wrong == std::errc{})
-	{
-		return sign * value;
-	}
-	const std::string_view odd = notFinite(rest);
-	return odd == "inf"   ? std::optional(sign * std::numeric_limits<double>::infinity())
-		   : odd == "nan" ? std::optional(std::numeric_limits<double>::quiet_NaN())
-						  : std::nullopt;
-}
-
-std::string textFrom(const std::vector<std::string_view>& words, std::size_t first)
-{
-	return {words[first].data(), words.back().data() + words.back().size()};
-}
-
-std::string quoted(std::string_view word)
-{
-	constexpr std::size_t kMost = 40;
-	return "'" + std::string(word.substr(0, kMost)) + (word.size() > kMost ? "...'" : "'");
-}
-
-std::optional<int> wholeOf(std::string_view word)
-{
-	int value = 0;
-	const bool positive = word.starts_with('+') && !word.starts_with("+-");
-	const char* const end = word.data() + word.size();
-	const auto [stop, wrong] = std::from_chars(word.data() + (positive ? 1 : 0), end, value);
-	return wrong == std::errc{} && stop == end ? std::optional(value) : std::nullopt;
-}
-
-void splitWords(std::string_view line, std::vector<std::string_view>& words)
-{
-	words.clear();
-	for (std::size_t at = 0; at < line.size();)
-	{
-		const std::size_t begin = at;
-		while (at < line.size() && !isBlank(line[at]))
-		{
-			++at;
-		}
-		if (at > begin)
-		{
-			words.push_back(line.substr(begin, at - begin));
-		}
-		++at;
-	}
-}
-
-std::string readMeshText(const std::string& path)
-{
-	std::string bytes = readFile(path);
-	bytes.erase(0, bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0);
-	return bytes;
-}
-
-namespace
-{
-
 struct Property
 {
 	std::size_t bytes = 0;       // size of a value, or of one in the list
@@ -453,16 +379,6 @@ private:
 	bool m_big_endian = false;
 };
 
-} // namespace
-
-MeshFile readPly(const std::string& bytes, const std::string& path)
-{
-	return PlyReader(bytes, path).run();
-}
-
-namespace
-{
-
 constexpr std::size_t kHead = 84; // bytes before the first triangle
 
 // Size of a binary file with this head.
@@ -569,6 +485,80 @@ private:
 };
 
 } // namespace
+
+std::optional<double> numberOf(std::string_view word)
+{
+	const double sign = word.starts_with('-') ? -1.0 : 1.0;
+	const std::string_view rest = withoutSign(word);
+	double value = 0.0;
+	const auto [end, wrong] = readDecimal(rest.data(), rest.data() + rest.size(), value);
+	const bool whole = end == rest.data() + rest.size() && rest.find_first_of("0123456789.") == 0;
+	if (whole && wrong == std::errc::result_out_of_range)
+	{
+		const std::size_t exponent = rest.find_first_of("eE");
+		const bool small = exponent == std::string_view::npos ? rest.find_first_not_of('0') == rest.find('.')
+															  : rest.substr(exponent + 1).starts_with('-');
+		return small ? 0.0 : sign * std::numeric_limits<double>::infinity();
+	}
+	if (whole && wrong == std::errc{})
+	{
+		return sign * value;
+	}
+	const std::string_view odd = notFinite(rest);
+	return odd == "inf"   ? std::optional(sign * std::numeric_limits<double>::infinity())
+		   : odd == "nan" ? std::optional(std::numeric_limits<double>::quiet_NaN())
+						  : std::nullopt;
+}
+
+std::string textFrom(const std::vector<std::string_view>& words, std::size_t first)
+{
+	return {words[first].data(), words.back().data() + words.back().size()};
+}
+
+std::string quoted(std::string_view word)
+{
+	constexpr std::size_t kMost = 40;
+	return "'" + std::string(word.substr(0, kMost)) + (word.size() > kMost ? "...'" : "'");
+}
+
+std::optional<int> wholeOf(std::string_view word)
+{
+	int value = 0;
+	const bool positive = word.starts_with('+') && !word.starts_with("+-");
+	const char* const end = word.data() + word.size();
+	const auto [stop, wrong] = std::from_chars(word.data() + (positive ? 1 : 0), end, value);
+	return wrong == std::errc{} && stop == end ? std::optional(value) : std::nullopt;
+}
+
+void splitWords(std::string_view line, std::vector<std::string_view>& words)
+{
+	words.clear();
+	for (std::size_t at = 0; at < line.size();)
+	{
+		const std::size_t begin = at;
+		while (at < line.size() && !isBlank(line[at]))
+		{
+			++at;
+		}
+		if (at > begin)
+		{
+			words.push_back(line.substr(begin, at - begin));
+		}
+		++at;
+	}
+}
+
+std::string readMeshText(const std::string& path)
+{
+	std::string bytes = readFile(path);
+	bytes.erase(0, bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+	return bytes;
+}
+
+MeshFile readPly(const std::string& bytes, const std::string& path)
+{
+	return PlyReader(bytes, path).run();
+}
 
 MeshFile readStl(const std::string& bytes, const std::string& path)
 {

@@ -234,17 +234,7 @@ private:
 	uint32_t m_material = 0;
 };
 
-} // namespace
-
-MeshFile readObj(const std::string& text, const std::string& path, const LoadSettings& settings)
-{
-	return ObjReader(path, settings).run(text);
-}
-
 // This work is based on: Diane Ramey, Linda Rose, Lisa Tyerman, "MTL material format (Lightwave, OBJ)", Alias|Wavefront 1995.
-
-namespace
-{
 
 // A line that references a picture: "map_d -s 2 2 1 -clamp on a leaf.png".
 class PictureLine
@@ -422,6 +412,11 @@ std::string colourOf(const std::vector<std::string_view>& words, const TextPlace
 }
 
 } // namespace
+
+MeshFile readObj(const std::string& text, const std::string& path, const LoadSettings& settings)
+{
+	return ObjReader(path, settings).run(text);
+}
 
 void readMtl(const std::string& text, const std::string& path, MtlMaterials& materials)
 {

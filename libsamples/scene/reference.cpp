@@ -108,8 +108,7 @@ private:
 // Fills scratch.values with the occlusion in [0, 1] of one placement of the set.
 using Fill = std::function<void(const SampleSet& set, Random& random, Scratch& scratch)>;
 
-// Two vectors that form a right-handed frame with the unit vector n (T. Duff et al., "Building an Orthonormal Basis, Revisited",
-// 2017).
+// Two vectors that complete a right-handed frame with n (T. Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
 void frameOf(glm::vec3 n, glm::vec3& tangent, glm::vec3& bitangent)
 {
 	const float sign = std::copysign(1.0F, n.z);
@@ -293,8 +292,7 @@ struct PixelPoints
 		const ViewLine line = projector.lineOf({x + 0.5, y + 0.5});
 		const auto depth_m = static_cast<double>(gbuffer.depth[pixel]);
 		const glm::dvec3 normal(gbuffer.normals[pixel]);
-		// Errors off the surface come from the depth, at best a 32-bit number, and from the camera's matrices if the file had only
-		// 32 bits.
+		// Errors off the surface come from the depth, at best a 32-bit number, and from camera matrices of 32 bits.
 		const double error_m =
 			gbuffer.depth_error_m.empty() ? depth_m * kUnitRoundoff : static_cast<double>(gbuffer.depth_error_m[pixel]);
 		const double lift_m = error_m * std::max(std::fabs(glm::dot(line.along, normal)), 1e-3) + gbuffer.view_error_m;

@@ -15,7 +15,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace nook
@@ -85,8 +84,7 @@ struct ReferenceValue
 // Half angle in radians of the cone around the normal with the same cosine-weighted visibility, sin²α.
 double coneAngle(double visibility);
 
-// Each value depends only on its point's index, the seed and the level, not on threads or other points. Not for MatterSource::depth
-// or ReferenceMeasure::box.
+// A value depends only on its point's index, the seed and the level. Not for MatterSource::depth or ReferenceMeasure::box.
 std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::span<const ReferencePoint> points,
 											  const ReferenceSettings& settings, const RunSettings& run);
 
@@ -122,8 +120,7 @@ public:
 	DepthMatter() = default;
 	DepthMatter(const GBuffer& gbuffer, const RunSettings& run);
 
-	// Like matterOfGeometry, in view space. Points outside the picture are unknown and get the mean of the others (0 if there are
-	// none).
+	// Like matterOfGeometry, in view space. Points outside the picture get the mean of the others (0 if there are none).
 	void sample(glm::dvec3 origin, const Directions& offsets, std::span<float> matter) const;
 
 private:
@@ -156,8 +153,7 @@ std::string visibilityExr(int width_px, int height_px, std::span<const Reference
 // Additionally `bent.X`, `bent.Y`, `bent.Z` (unit, view space, 0 for sky) and `cone_angle` (coneAngle, radians).
 std::string bentExr(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes);
 
-// For a method, without a standard error: channels `bent.X`, `bent.Y`, `bent.Z`, `cone_angle`, `visibility`. Both lists have equal
-// sizes.
+// For a method: channels `bent.X`, `bent.Y`, `bent.Z`, `cone_angle`, `visibility`. Both lists have equal sizes.
 std::string bentExr(int width_px, int height_px, std::span<const glm::vec3> bent, std::span<const float> visibility,
 					const Notes& notes);
 

@@ -3,6 +3,7 @@
 
 #include "core/decimal.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "core/words.h"
 #include "scene/level.h"
 #include "scene/load.h"
@@ -52,8 +53,7 @@ std::optional<std::array<double, 6>> parseRow(std::string_view row)
 	return numbers;
 }
 
-// Possible error of a written coordinate. Points often come from 32-bit numbers, except map coordinates, where these are a
-// millimetre or more apart.
+// Possible error of a coordinate: usually of a 32-bit number, but map coordinates would be millimetres apart.
 double roundingOf(double size_m)
 {
 	return size_m * (size_m < kLarge_m ? 0x1p-24 : 0x1p-53);
@@ -159,12 +159,11 @@ std::string bentExr(int width_px, int height_px, std::span<const glm::vec3> bent
 
 std::string bentPng(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes)
 {
-	std::vector<glm::vec3> bent;
-	for (const ReferenceValue& value : values)
+	const auto bentOf = [](const ReferenceValue& value)
 	{
-		bent.push_back(value.rays == 0 ? glm::vec3(0.0F) : value.bent);
-	}
-	return bentPng(width_px, height_px, bent, notes);
+		return value.rays == 0 ? glm::vec3(0.0F) : value.bent;
+	};
+	return bentPng(width_px, height_px, mapped(values, bentOf), notes);
 }
 
 std::string bentPng(int width_px, int height_px, std::span<const glm::vec3> bent, const Notes& notes)
@@ -204,12 +203,11 @@ std::string visibilityExr(int width_px, int height_px, std::span<const float> vi
 
 std::string visibilityPng(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes)
 {
-	std::vector<float> visibility;
-	for (const ReferenceValue& value : values)
+	const auto visibilityOf = [](const ReferenceValue& value)
 	{
-		visibility.push_back(static_cast<float>(value.visibility));
-	}
-	return visibilityPng(width_px, height_px, visibility, notes);
+		return static_cast<float>(value.visibility);
+	};
+	return visibilityPng(width_px, height_px, mapped(values, visibilityOf), notes);
 }
 
 std::string visibilityPng(int width_px, int height_px, std::span<const float> visibility, const Notes& notes)
@@ -226,12 +224,8 @@ std::string visibilityPng(int width_px, int height_px, std::span<const float> vi
 
 std::string visibilityCsv(std::span<const ReferenceValue> values)
 {
-	std::string text = "visibility,standard_error,rays\n";
-	for (const ReferenceValue& value : values)
-	{
-		text += rowOf(value) + "\n";
-	}
-	return text;
+	return "visibility,standard_error,rays\n" +
+		   joinedText(values, "", [](const ReferenceValue& value) { return rowOf(value) + "\n"; });
 }
 
 } // namespace nook

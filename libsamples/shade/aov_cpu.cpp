@@ -2,6 +2,7 @@
 // This work is based on: Morgan McGuire, Ambient Occlusion Volumes, 2010 (AOV), §5.
 #include "shade/aov.h"
 
+#include "core/lists.h"
 #include "core/parallel.h"
 #include "core/round.h"
 #include "methods/block.h"
@@ -240,10 +241,7 @@ AovShaded aovOnCpu(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSe
 	{
 		shaded.visibility = cells.values;
 	}
-	for (const PassTime& pass : shaded.passes)
-	{
-		shaded.seconds += pass.seconds;
-	}
+	shaded.seconds = sumOver(shaded.passes, [](const PassTime& pass) { return pass.seconds; });
 	return result;
 }
 

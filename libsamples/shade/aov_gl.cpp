@@ -5,7 +5,6 @@
 #include "methods/block.h"
 #include "methods/kernels.h"
 #include "shade/aov_gl_parts.h"
-#include "shade/gl_context.h"
 #include "shade/run_passes.h"
 
 #include <epoxy/gl.h>
@@ -25,6 +24,7 @@ namespace nook
 {
 
 GlArray::GlArray(std::span<const std::byte> bytes, unsigned format, std::size_t texel)
+	: m_buffer(glGenBuffers, glDeleteBuffers), m_texture(glGenTextures, glDeleteTextures)
 {
 	int most = 0;
 	glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
@@ -34,8 +34,6 @@ GlArray::GlArray(std::span<const std::byte> bytes, unsigned format, std::size_t 
 											   " corners, polygons or clusters of volumes, expected at most " +
 											   std::to_string(most));
 	}
-	glGenBuffers(1, &m_buffer);
-	glGenTextures(1, &m_texture);
 	glBindBuffer(GL_TEXTURE_BUFFER, m_buffer);
 	glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max(bytes.size(), texel)), nullptr, GL_STATIC_DRAW);
 	glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
@@ -43,12 +41,6 @@ GlArray::GlArray(std::span<const std::byte> bytes, unsigned format, std::size_t 
 	glBindTexture(GL_TEXTURE_BUFFER, m_texture);
 	glTexBuffer(GL_TEXTURE_BUFFER, format, m_buffer);
 	checkGlErrors();
-}
-
-GlArray::~GlArray()
-{
-	glDeleteTextures(1, &m_texture);
-	glDeleteBuffers(1, &m_buffer);
 }
 
 void GlArray::bindTexture(unsigned unit) const
@@ -78,14 +70,9 @@ GlProgram::GlProgram(const std::string& vertex, const std::string& fragment)
 	checkGlErrors();
 }
 
-GlProgram::~GlProgram()
-{
-	glDeleteProgram(m_name);
-}
-
 GlTarget::GlTarget(unsigned stored, unsigned channels, unsigned type, int width, int height)
+	: m_name(glGenTextures, glDeleteTextures)
 {
-	glGenTextures(1, &m_name);
 	glActiveTexture(GL_TEXTURE15);
 	glBindTexture(GL_TEXTURE_2D, m_name);
 	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
@@ -94,14 +81,8 @@ GlTarget::GlTarget(unsigned stored, unsigned channels, unsigned type, int width,
 	checkGlErrors();
 }
 
-GlTarget::~GlTarget()
+GlFrame::GlFrame(std::span<const unsigned> colours, unsigned depth) : m_name(glGenFramebuffers, glDeleteFramebuffers)
 {
-	glDeleteTextures(1, &m_name);
-}
-
-GlFrame::GlFrame(std::span<const unsigned> colours, unsigned depth)
-{
-	glGenFramebuffers(1, &m_name);
 	glBindFramebuffer(GL_FRAMEBUFFER, m_name);
 	std::vector<unsigned> places;
 	for (const unsigned colour : colours)
@@ -116,14 +97,8 @@ GlFrame::GlFrame(std::span<const unsigned> colours, unsigned depth)
 	}
 	if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
 	{
-		glDeleteFramebuffers(1, &m_name);
 		throw Error(ExitCode::unsupported, "OpenGL: found no pictures of that format to draw into, expected some");
 	}
-}
-
-GlFrame::~GlFrame()
-{
-	glDeleteFramebuffers(1, &m_name);
 }
 
 void GlFrame::use() const
@@ -201,9 +176,6 @@ class AovPicture
 public:
 	// Throws Error (unsupported) for a skewed camera.
 	AovPicture(const GBuffer& gbuffer, const nook_volumes::Header& header, const AovSettings& settings, int every_px);
-	~AovPicture();
-	AovPicture(const AovPicture&) = delete;
-	AovPicture& operator=(const AovPicture&) = delete;
 
 	const nook_volumes::Frame& frame() const
 	{
@@ -217,8 +189,7 @@ public:
 	// Binds the uniform block and this picture's textures.
 	void bind() const;
 
-	// Draws the depth buffer from the bound linear depths (aovDepthProgram); leaves the depth test enabled and depth writes
-	// disabled.
+	// Draws the depth buffer from the bound linear depths; leaves the depth test enabled and depth writes disabled.
 	void drawDepth(const GlProgram& program) const;
 
 	// Call before drawing volumes: clears the sums or bits and draws into them.
@@ -238,16 +209,8 @@ private:
 	std::vector<std::unique_ptr<GlTarget>> m_sums;
 	std::unique_ptr<GlTexture> m_result;
 	std::unique_ptr<GlFrame> m_volume_frame, m_result_frame;
-	unsigned m_block = 0;
+	GlName m_block;
 };
-
-void bindTexture(unsigned unit, unsigned name);
-
-// A triangle that covers the whole picture.
-extern const char* const kFullScreen;
-
-// Converts linear depth to depth buffer values.
-std::unique_ptr<GlProgram> aovDepthProgram();
 
 // Packed volumes on the GPU, and draw calls for their clusters.
 
@@ -256,9 +219,6 @@ class GlVolumes
 public:
 	// The volumes of one frame. Keeps references to both arguments, which must outlive it. Throws like GlArray.
 	GlVolumes(const PackedVolumes& packed, const nook_volumes::Frame& frame, const AovGlOptions& options);
-	~GlVolumes();
-	GlVolumes(const GlVolumes&) = delete;
-	GlVolumes& operator=(const GlVolumes&) = delete;
 
 	// Call before drawing: binds the shaders' arrays and the vertex attributes.
 	void bind() const;
@@ -281,20 +241,22 @@ private:
 	AovGlOptions m_options;
 	std::unique_ptr<GlArray> m_corners, m_polygons, m_clusters, m_points, m_indices, m_numbers;
 	bool m_bounds = false;
-	unsigned m_vertices = 0;
-	unsigned m_commands = 0;
+	GlName m_vertices;
+	GlName m_commands;
 };
 
-const char* const kFullScreen = R"(#version 330 core
+namespace
+{
+
+// A triangle that covers the whole picture.
+constexpr const char* kFullScreen = R"(#version 330 core
 void main()
 {
 	gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
 }
 )";
 
-namespace
-{
-
+// Converts linear depth to depth buffer values.
 constexpr const char* kDepthPass = R"(#version 330 core
 uniform sampler2D nook_depths;
 uniform int nook_every;
@@ -320,222 +282,16 @@ std::unique_ptr<GlTarget> bitsTarget(int bits, int width, int height)
 	return std::make_unique<GlTarget>(stored, channels, GL_UNSIGNED_INT, width, height);
 }
 
-} // namespace
-
 void bindTexture(unsigned unit, unsigned name)
 {
 	glActiveTexture(GL_TEXTURE0 + unit);
 	glBindTexture(GL_TEXTURE_2D, name);
 }
 
-std::unique_ptr<GlProgram> aovDepthProgram()
-{
-	return std::make_unique<GlProgram>(kFullScreen, kDepthPass);
-}
-
-AovPicture::AovPicture(const GBuffer& gbuffer, const nook_volumes::Header& header, const AovSettings& settings, int every_px)
-	: m_mask(settings.mask), m_every_px(every_px), m_columns((gbuffer.width_px + every_px - 1) / every_px),
-	  m_rows((gbuffer.height_px + every_px - 1) / every_px), m_camera(cameraOf(gbuffer, every_px))
-{
-	const char* const problem = m_frame.set(header, m_camera);
-	if (problem != nullptr)
-	{
-		throw Error(ExitCode::unsupported,
-					std::string("camera: found ") + problem + ", expected a right-handed one, column by column, without a skew");
-	}
-	m_depth_stencil =
-		std::make_unique<GlTarget>(GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, m_columns, m_rows);
-	std::vector<unsigned> sums;
-	for (int first = 0; first < (settings.mask ? settings.directions : 1); first += 128)
-	{
-		// Above 128 directions there are two targets, the second with all four channels; unused ones stay 0.
-		m_sums.push_back(settings.mask ? bitsTarget(first > 0 ? 128 : settings.directions, m_columns, m_rows)
-									   : sumTarget(settings.target, m_columns, m_rows));
-		sums.push_back(m_sums.back()->name());
-	}
-	m_result = std::make_unique<GlTexture>(PictureShape{PictureFormat::scalar, m_columns, m_rows});
-	m_volume_frame = std::make_unique<GlFrame>(sums, m_depth_stencil->name());
-	m_result_frame = std::make_unique<GlFrame>(std::array{m_result->name()}, m_depth_stencil->name());
-	glGenBuffers(1, &m_block);
-	glBindBuffer(GL_UNIFORM_BUFFER, m_block);
-	glBufferData(GL_UNIFORM_BUFFER, sizeof m_frame.block, &m_frame.block, GL_STATIC_DRAW);
-}
-
-AovPicture::~AovPicture()
-{
-	glDeleteBuffers(1, &m_block);
-}
-
-void AovPicture::bind() const
-{
-	glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
-	bindTexture(5, m_sums[0]->name());
-	bindTexture(6, m_sums.back()->name());
-	bindTexture(7, m_result->name());
-}
-
-void AovPicture::drawDepth(const GlProgram& program) const
-{
-	const double* const p = m_camera.projection;
-	m_volume_frame->use();
-	glViewport(0, 0, m_columns, m_rows);
-	glUseProgram(program.name());
-	glUniform4f(glGetUniformLocation(program.name(), "nook_z"), static_cast<float>(-p[10]), static_cast<float>(p[14]),
-				static_cast<float>(-p[11]), static_cast<float>(p[15]));
-	glUniform1i(glGetUniformLocation(program.name(), "nook_every"), m_every_px);
-	glDisable(GL_BLEND);
-	glDisable(GL_CULL_FACE);
-	glEnable(GL_DEPTH_TEST);
-	glDepthFunc(GL_ALWAYS);
-	glDepthMask(GL_TRUE);
-	glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-	glDrawArrays(GL_TRIANGLES, 0, 3);
-	glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-	glDepthMask(GL_FALSE);
-}
-
-void AovPicture::beginVolumes() const
-{
-	m_volume_frame->use();
-	glViewport(0, 0, m_columns, m_rows);
-	const std::array<float, 4> none{};
-	const std::array<unsigned, 4> no_bits{};
-	for (std::size_t i = 0; i < m_sums.size(); ++i)
-	{
-		if (m_mask)
-		{
-			glClearBufferuiv(GL_COLOR, static_cast<int>(i), no_bits.data());
-			continue;
-		}
-		glClearBufferfv(GL_COLOR, static_cast<int>(i), none.data());
-	}
-}
-
-void AovPicture::useResult() const
-{
-	m_result_frame->use();
-	glViewport(0, 0, m_columns, m_rows);
-}
-
-namespace
-{
-
 template <class Item> std::span<const std::byte> bytesOf(const std::vector<Item>& items)
 {
 	return std::as_bytes(std::span(items));
 }
-
-} // namespace
-
-GlVolumes::GlVolumes(const PackedVolumes& packed, const nook_volumes::Frame& frame, const AovGlOptions& options)
-	: m_packed(packed), m_frame(frame), m_options(options)
-{
-	const auto seen = mapped(packed.clusters, [&](const nook_volumes::Cluster& cluster) { return frame.seen(cluster); });
-	m_corners = std::make_unique<GlArray>(bytesOf(packed.corners), GL_RGBA16UI, 8);
-	m_polygons = std::make_unique<GlArray>(bytesOf(packed.polygons), GL_RG32UI, 8);
-	m_clusters = std::make_unique<GlArray>(bytesOf(seen), GL_RGBA32UI, 16);
-	m_bounds = options.depth_bounds && !options.storage_buffers && epoxy_has_gl_extension("GL_EXT_depth_bounds_test");
-	glGenVertexArrays(1, &m_vertices);
-	glBindVertexArray(m_vertices);
-	if (options.prisms)
-	{
-		m_points = std::make_unique<GlArray>(bytesOf(packed.vertices), GL_RGBA16UI, 8);
-		m_indices = std::make_unique<GlArray>(bytesOf(packed.indices), GL_R16UI, 2);
-		glBindBuffer(GL_ARRAY_BUFFER, m_points->buffer());
-		glEnableVertexAttribArray(1);
-		glVertexAttribIPointer(1, 4, GL_UNSIGNED_SHORT, 8, nullptr);
-		glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, m_indices->buffer());
-	}
-	if (options.storage_buffers)
-	{
-		std::vector<int> numbers(packed.clusters.size());
-		std::iota(numbers.begin(), numbers.end(), 0);
-		m_numbers = std::make_unique<GlArray>(bytesOf(numbers), GL_R32I, 4);
-		glGenBuffers(1, &m_commands);
-		glBindBuffer(GL_ARRAY_BUFFER, m_numbers->buffer());
-		glEnableVertexAttribArray(0);
-		glVertexAttribIPointer(0, 1, GL_INT, 4, nullptr);
-		glVertexAttribDivisor(0, 1);
-	}
-}
-
-GlVolumes::~GlVolumes()
-{
-	glDeleteVertexArrays(1, &m_vertices);
-	glDeleteBuffers(1, &m_commands);
-}
-
-void GlVolumes::bind() const
-{
-	glBindVertexArray(m_vertices);
-	const std::array<const GlArray*, 3> arrays{m_corners.get(), m_polygons.get(), m_clusters.get()};
-	for (unsigned i = 0; i < arrays.size(); ++i)
-	{
-		arrays[i]->bindTexture(i);
-		if (m_options.storage_buffers)
-		{
-			arrays[i]->bindStorage(i);
-		}
-	}
-}
-
-void GlVolumes::draw(const std::vector<std::size_t>& clusters) const
-{
-	m_options.storage_buffers ? drawTogether(clusters) : drawOneByOne(clusters);
-}
-
-void GlVolumes::drawOneByOne(const std::vector<std::size_t>& clusters) const
-{
-	for (const std::size_t i : clusters)
-	{
-		const nook_volumes::Cluster& cluster = m_packed.clusters[i];
-		glVertexAttribI1i(0, static_cast<int>(i));
-		if (m_bounds)
-		{
-			double least = 0.0;
-			double most = 1.0;
-			m_frame.depthBounds(cluster, least, most);
-			glDepthBoundsEXT(least, most);
-		}
-		if (m_options.prisms)
-		{
-			const auto* const first = reinterpret_cast<const void*>(2 * static_cast<std::uintptr_t>(cluster.first_index));
-			glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<int>(cluster.index_count), GL_UNSIGNED_SHORT, first,
-									 static_cast<int>(cluster.first_vertex));
-			continue;
-		}
-		glDrawArrays(GL_TRIANGLES, static_cast<int>(12 * cluster.first_corner), static_cast<int>(12 * cluster.corner_count));
-	}
-}
-
-// A single draw call: cluster numbers are an instanced attribute, with one instance per cluster.
-void GlVolumes::drawTogether(const std::vector<std::size_t>& clusters) const
-{
-	std::vector<unsigned> commands; // in the layout of glMultiDrawArraysIndirect and glMultiDrawElementsIndirect
-	for (const std::size_t i : clusters)
-	{
-		const nook_volumes::Cluster& cluster = m_packed.clusters[i];
-		const auto number = static_cast<unsigned>(i);
-		if (m_options.prisms)
-		{
-			commands.insert(commands.end(), {cluster.index_count, 1U, cluster.first_index, cluster.first_vertex, number});
-			continue;
-		}
-		commands.insert(commands.end(), {12 * cluster.corner_count, 1U, 12 * cluster.first_corner, number});
-	}
-	glBindBuffer(GL_DRAW_INDIRECT_BUFFER, m_commands);
-	glBufferData(GL_DRAW_INDIRECT_BUFFER, static_cast<GLsizeiptr>(sizeof(unsigned) * commands.size()), commands.data(),
-				 GL_STREAM_DRAW);
-	if (m_options.prisms)
-	{
-		glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT, nullptr, static_cast<int>(clusters.size()), 0);
-		return;
-	}
-	glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, static_cast<int>(clusters.size()), 0);
-}
-
-namespace
-{
 
 void setTimes(Shaded& shaded, const std::vector<std::vector<PassTime>>& drawings)
 {
@@ -567,13 +323,6 @@ public:
 		choose(volumes);
 		upload();
 	}
-
-	~Drawer()
-	{
-		glDeleteQueries(1, &m_query);
-	}
-	Drawer(const Drawer&) = delete;
-	Drawer& operator=(const Drawer&) = delete;
 
 	std::vector<PassTime> draw(bool timer)
 	{
@@ -650,7 +399,7 @@ private:
 		const std::string head = m_options.storage_buffers ? "#version 430 core\n" : "#version 330 core\n";
 		const std::string vertex = head + "#define NOOK_VERTEX\n" + (m_options.prisms ? "#define NOOK_PRISMS\n" : "") +
 								   (m_options.choose_faces ? "#define NOOK_CHOOSE_FACES\n" : "");
-		m_depth_program = aovDepthProgram();
+		m_depth_program = std::make_unique<GlProgram>(kFullScreen, kDepthPass);
 		m_volume_program = std::make_unique<GlProgram>(vertex + m_text, head + "#define NOOK_FRAGMENT\n" + m_text);
 		m_resolve_program = std::make_unique<GlProgram>(kFullScreen, head + "#define NOOK_RESOLVE\n" + m_text);
 		if (m_whole)
@@ -661,7 +410,7 @@ private:
 		{
 			drawHalfSpaces(head);
 		}
-		glGenQueries(1, &m_query);
+		m_query = GlName(glGenQueries, glDeleteQueries);
 		checkGlErrors();
 	}
 
@@ -771,11 +520,190 @@ private:
 	std::unique_ptr<GlVolumes> m_volumes;
 	std::unique_ptr<GlTarget> m_half_spaces; // masks: their table
 	std::unique_ptr<GlProgram> m_depth_program, m_volume_program, m_resolve_program, m_sparse_program;
-	unsigned m_query = 0;
+	GlName m_query;
 	AovCounts m_counts;
 };
 
 } // namespace
+
+AovPicture::AovPicture(const GBuffer& gbuffer, const nook_volumes::Header& header, const AovSettings& settings, int every_px)
+	: m_mask(settings.mask), m_every_px(every_px), m_columns((gbuffer.width_px + every_px - 1) / every_px),
+	  m_rows((gbuffer.height_px + every_px - 1) / every_px), m_camera(cameraOf(gbuffer, every_px)),
+	  m_block(glGenBuffers, glDeleteBuffers)
+{
+	const char* const problem = m_frame.set(header, m_camera);
+	if (problem != nullptr)
+	{
+		throw Error(ExitCode::unsupported,
+					std::string("camera: found ") + problem + ", expected a right-handed one, column by column, without a skew");
+	}
+	m_depth_stencil =
+		std::make_unique<GlTarget>(GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, m_columns, m_rows);
+	std::vector<unsigned> sums;
+	for (int first = 0; first < (settings.mask ? settings.directions : 1); first += 128)
+	{
+		// Above 128 directions there are two targets, the second with all four channels; unused ones stay 0.
+		m_sums.push_back(settings.mask ? bitsTarget(first > 0 ? 128 : settings.directions, m_columns, m_rows)
+									   : sumTarget(settings.target, m_columns, m_rows));
+		sums.push_back(m_sums.back()->name());
+	}
+	m_result = std::make_unique<GlTexture>(PictureShape{PictureFormat::scalar, m_columns, m_rows});
+	m_volume_frame = std::make_unique<GlFrame>(sums, m_depth_stencil->name());
+	m_result_frame = std::make_unique<GlFrame>(std::array{m_result->name()}, m_depth_stencil->name());
+	glBindBuffer(GL_UNIFORM_BUFFER, m_block);
+	glBufferData(GL_UNIFORM_BUFFER, sizeof m_frame.block, &m_frame.block, GL_STATIC_DRAW);
+}
+
+void AovPicture::bind() const
+{
+	glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
+	bindTexture(5, m_sums[0]->name());
+	bindTexture(6, m_sums.back()->name());
+	bindTexture(7, m_result->name());
+}
+
+void AovPicture::drawDepth(const GlProgram& program) const
+{
+	const double* const p = m_camera.projection;
+	m_volume_frame->use();
+	glViewport(0, 0, m_columns, m_rows);
+	glUseProgram(program.name());
+	glUniform4f(glGetUniformLocation(program.name(), "nook_z"), static_cast<float>(-p[10]), static_cast<float>(p[14]),
+				static_cast<float>(-p[11]), static_cast<float>(p[15]));
+	glUniform1i(glGetUniformLocation(program.name(), "nook_every"), m_every_px);
+	glDisable(GL_BLEND);
+	glDisable(GL_CULL_FACE);
+	glEnable(GL_DEPTH_TEST);
+	glDepthFunc(GL_ALWAYS);
+	glDepthMask(GL_TRUE);
+	glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+	glDrawArrays(GL_TRIANGLES, 0, 3);
+	glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+	glDepthMask(GL_FALSE);
+}
+
+void AovPicture::beginVolumes() const
+{
+	m_volume_frame->use();
+	glViewport(0, 0, m_columns, m_rows);
+	const std::array<float, 4> none{};
+	const std::array<unsigned, 4> no_bits{};
+	for (std::size_t i = 0; i < m_sums.size(); ++i)
+	{
+		if (m_mask)
+		{
+			glClearBufferuiv(GL_COLOR, static_cast<int>(i), no_bits.data());
+			continue;
+		}
+		glClearBufferfv(GL_COLOR, static_cast<int>(i), none.data());
+	}
+}
+
+void AovPicture::useResult() const
+{
+	m_result_frame->use();
+	glViewport(0, 0, m_columns, m_rows);
+}
+
+GlVolumes::GlVolumes(const PackedVolumes& packed, const nook_volumes::Frame& frame, const AovGlOptions& options)
+	: m_packed(packed), m_frame(frame), m_options(options), m_vertices(glGenVertexArrays, glDeleteVertexArrays)
+{
+	const auto seen = mapped(packed.clusters, [&](const nook_volumes::Cluster& cluster) { return frame.seen(cluster); });
+	m_corners = std::make_unique<GlArray>(bytesOf(packed.corners), GL_RGBA16UI, 8);
+	m_polygons = std::make_unique<GlArray>(bytesOf(packed.polygons), GL_RG32UI, 8);
+	m_clusters = std::make_unique<GlArray>(bytesOf(seen), GL_RGBA32UI, 16);
+	m_bounds = options.depth_bounds && !options.storage_buffers && epoxy_has_gl_extension("GL_EXT_depth_bounds_test");
+	glBindVertexArray(m_vertices);
+	if (options.prisms)
+	{
+		m_points = std::make_unique<GlArray>(bytesOf(packed.vertices), GL_RGBA16UI, 8);
+		m_indices = std::make_unique<GlArray>(bytesOf(packed.indices), GL_R16UI, 2);
+		glBindBuffer(GL_ARRAY_BUFFER, m_points->buffer());
+		glEnableVertexAttribArray(1);
+		glVertexAttribIPointer(1, 4, GL_UNSIGNED_SHORT, 8, nullptr);
+		glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, m_indices->buffer());
+	}
+	if (options.storage_buffers)
+	{
+		std::vector<int> numbers(packed.clusters.size());
+		std::iota(numbers.begin(), numbers.end(), 0);
+		m_numbers = std::make_unique<GlArray>(bytesOf(numbers), GL_R32I, 4);
+		m_commands = GlName(glGenBuffers, glDeleteBuffers);
+		glBindBuffer(GL_ARRAY_BUFFER, m_numbers->buffer());
+		glEnableVertexAttribArray(0);
+		glVertexAttribIPointer(0, 1, GL_INT, 4, nullptr);
+		glVertexAttribDivisor(0, 1);
+	}
+}
+
+void GlVolumes::bind() const
+{
+	glBindVertexArray(m_vertices);
+	const std::array<const GlArray*, 3> arrays{m_corners.get(), m_polygons.get(), m_clusters.get()};
+	for (unsigned i = 0; i < arrays.size(); ++i)
+	{
+		arrays[i]->bindTexture(i);
+		if (m_options.storage_buffers)
+		{
+			arrays[i]->bindStorage(i);
+		}
+	}
+}
+
+void GlVolumes::draw(const std::vector<std::size_t>& clusters) const
+{
+	m_options.storage_buffers ? drawTogether(clusters) : drawOneByOne(clusters);
+}
+
+void GlVolumes::drawOneByOne(const std::vector<std::size_t>& clusters) const
+{
+	for (const std::size_t i : clusters)
+	{
+		const nook_volumes::Cluster& cluster = m_packed.clusters[i];
+		glVertexAttribI1i(0, static_cast<int>(i));
+		if (m_bounds)
+		{
+			double least = 0.0;
+			double most = 1.0;
+			m_frame.depthBounds(cluster, least, most);
+			glDepthBoundsEXT(least, most);
+		}
+		if (m_options.prisms)
+		{
+			const auto* const first = reinterpret_cast<const void*>(2 * static_cast<std::uintptr_t>(cluster.first_index));
+			glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<int>(cluster.index_count), GL_UNSIGNED_SHORT, first,
+									 static_cast<int>(cluster.first_vertex));
+			continue;
+		}
+		glDrawArrays(GL_TRIANGLES, static_cast<int>(12 * cluster.first_corner), static_cast<int>(12 * cluster.corner_count));
+	}
+}
+
+// A single draw call: cluster numbers are an instanced attribute, with one instance per cluster.
+void GlVolumes::drawTogether(const std::vector<std::size_t>& clusters) const
+{
+	std::vector<unsigned> commands; // in the layout of glMultiDrawArraysIndirect and glMultiDrawElementsIndirect
+	for (const std::size_t i : clusters)
+	{
+		const nook_volumes::Cluster& cluster = m_packed.clusters[i];
+		const auto number = static_cast<unsigned>(i);
+		if (m_options.prisms)
+		{
+			commands.insert(commands.end(), {cluster.index_count, 1U, cluster.first_index, cluster.first_vertex, number});
+			continue;
+		}
+		commands.insert(commands.end(), {12 * cluster.corner_count, 1U, 12 * cluster.first_corner, number});
+	}
+	glBindBuffer(GL_DRAW_INDIRECT_BUFFER, m_commands);
+	glBufferData(GL_DRAW_INDIRECT_BUFFER, static_cast<GLsizeiptr>(sizeof(unsigned) * commands.size()), commands.data(),
+				 GL_STREAM_DRAW);
+	if (m_options.prisms)
+	{
+		glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT, nullptr, static_cast<int>(clusters.size()), 0);
+		return;
+	}
+	glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, static_cast<int>(clusters.size()), 0);
+}
 
 AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSettings& settings, const DrawSettings& drawing,
 				  const AovGlOptions& options)

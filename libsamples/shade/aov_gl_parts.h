@@ -4,6 +4,7 @@
 
 #include "methods/aov_text.h"
 #include "shade/aov.h"
+#include "shade/gl_context.h"
 #include "volume/packed.h"
 #include "volume/runtime/nook_volumes_draw.h"
 
@@ -21,9 +22,6 @@ class GlArray
 public:
 	// `format` is the texel format and `texel` its size in bytes. Throws Error (unsupported) for more texels than OpenGL supports.
 	GlArray(std::span<const std::byte> bytes, unsigned format, std::size_t texel);
-	~GlArray();
-	GlArray(const GlArray&) = delete;
-	GlArray& operator=(const GlArray&) = delete;
 
 	void bindTexture(unsigned unit) const;
 	void bindStorage(unsigned binding) const; // OpenGL 4.3
@@ -33,8 +31,8 @@ public:
 	}
 
 private:
-	unsigned m_buffer = 0;
-	unsigned m_texture = 0;
+	GlName m_buffer;
+	GlName m_texture;
 };
 
 // Textures that the programs read, by unit.
@@ -47,9 +45,6 @@ class GlProgram
 {
 public:
 	GlProgram(const std::string& vertex, const std::string& fragment);
-	~GlProgram();
-	GlProgram(const GlProgram&) = delete;
-	GlProgram& operator=(const GlProgram&) = delete;
 
 	unsigned name() const
 	{
@@ -57,7 +52,7 @@ public:
 	}
 
 private:
-	unsigned m_name = 0;
+	GlName m_name;
 };
 
 // An empty texture used as render target.
@@ -65,9 +60,6 @@ class GlTarget
 {
 public:
 	GlTarget(unsigned stored, unsigned channels, unsigned type, int width, int height);
-	~GlTarget();
-	GlTarget(const GlTarget&) = delete;
-	GlTarget& operator=(const GlTarget&) = delete;
 
 	unsigned name() const
 	{
@@ -75,7 +67,7 @@ public:
 	}
 
 private:
-	unsigned m_name = 0;
+	GlName m_name;
 };
 
 // Render targets drawn into together; depth: with stencil, 0: none.
@@ -83,13 +75,10 @@ class GlFrame
 {
 public:
 	GlFrame(std::span<const unsigned> colours, unsigned depth);
-	~GlFrame();
-	GlFrame(const GlFrame&) = delete;
-	GlFrame& operator=(const GlFrame&) = delete;
 	void use() const;
 
 private:
-	unsigned m_name = 0;
+	GlName m_name;
 };
 
 // How aovOnGl draws; does not affect the pictures.

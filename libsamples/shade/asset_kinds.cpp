@@ -7,8 +7,8 @@
 #include "core/lists.h"
 #include "methods/method_table.h"
 #include "scene/gltf_edit.h"
+#include "volume/assets.h"
 #include "volume/build.h"
-#include "volume/runtime_assets.h"
 #include "volume/volume_glb.h"
 #include "volume/volumes.h"
 
@@ -214,10 +214,8 @@ public:
 		PassTime none{"none"};
 		none.drawings.push_back(0.0);
 		drawn.shaded.passes = {none};
-		for (std::size_t i = 0; i < picture.values.size(); ++i)
-		{
-			drawn.shaded.visibility.push_back(picture.is_baked[i] != 0 ? picture.values[i] : 1.0F);
-		}
+		drawn.shaded.visibility = listOf(picture.values.size(),
+										 [&picture](std::size_t i) { return picture.is_baked[i] != 0 ? picture.values[i] : 1.0F; });
 		return drawn;
 	}
 
@@ -375,15 +373,8 @@ const AssetKind* assetNamed(std::string_view name)
 
 std::vector<const AssetKind*> kindsBesideMethods()
 {
-	std::vector<const AssetKind*> kinds;
-	for (const AssetKind& kind : assetTable())
-	{
-		if (methodNamed(kind.name) == nullptr)
-		{
-			kinds.push_back(&kind);
-		}
-	}
-	return kinds;
+	return itemsWhere(mapped(assetTable(), [](const AssetKind& kind) { return &kind; }),
+					  [](const AssetKind* kind) { return methodNamed(kind->name) == nullptr; });
 }
 
 std::string namesBesideMethods()

@@ -212,6 +212,18 @@ PatternTile tileFor(const std::string& path, const ShadeSettings& settings, cons
 	return tile;
 }
 
+// The rows of the picture within the guard band.
+template <class Value> std::vector<Value> inside(const GBuffer& gbuffer, const std::vector<Value>& values, int guard)
+{
+	std::vector<Value> inner;
+	for (int y = guard; y < gbuffer.height_px - guard; ++y)
+	{
+		const auto row = values.begin() + static_cast<std::ptrdiff_t>(y) * gbuffer.width_px;
+		inner.insert(inner.end(), row + guard, row + gbuffer.width_px - guard);
+	}
+	return inner;
+}
+
 } // namespace
 
 Composed compose(const ComposeSettings& settings, const GBuffer& gbuffer, const RunSettings& run)
@@ -290,23 +302,6 @@ ShadeSamples shadeSamples(const std::string& path, const std::optional<int>& fra
 	samples.variant = variantOfFrame(tile, frame.value_or(0));
 	return samples;
 }
-
-namespace
-{
-
-// The rows of the picture within the guard band.
-template <class Value> std::vector<Value> inside(const GBuffer& gbuffer, const std::vector<Value>& values, int guard)
-{
-	std::vector<Value> inner;
-	for (int y = guard; y < gbuffer.height_px - guard; ++y)
-	{
-		const auto row = values.begin() + static_cast<std::ptrdiff_t>(y) * gbuffer.width_px;
-		inner.insert(inner.end(), row + guard, row + gbuffer.width_px - guard);
-	}
-	return inner;
-}
-
-} // namespace
 
 Picture withoutGuard(const std::string& path, const GBuffer& gbuffer, const std::vector<float>& values, int guard_px)
 {

@@ -138,6 +138,62 @@ constexpr const char* kVertexSource = R"(void main()
 }
 )";
 
+std::vector<float> readFloats(const GlTexture& texture, unsigned format, std::size_t channels)
+{
+	const PictureShape& shape = texture.shape();
+	std::vector<float> values(channels * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
+	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
+	glBindFramebuffer(GL_FRAMEBUFFER, frame);
+	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
+	glPixelStorei(GL_PACK_ALIGNMENT, 4);
+	glReadPixels(0, 0, shape.width, shape.height, format, GL_FLOAT, values.data());
+	checkGlErrors();
+	return values;
+}
+
+// This work is based on: W. D. Hillis, G. L. Steele, "Data Parallel Algorithms", CACM 1986 (sums by doubling distances).
+
+// One work group per row or column; processes 256 entries at a time and carries the sum along.
+constexpr const char* kSource = R"(
+layout(local_size_x = 256) in;
+uniform highp usampler2DArray nook_source;
+layout(rgba32ui) writeonly uniform uimage2D nook_target;
+shared uvec4 nook_sums[2][256];
+void main()
+{
+	int line = int(gl_WorkGroupID.x);
+	int lane = int(gl_LocalInvocationID.x);
+	ivec2 size = textureSize(nook_source, 0).xy;
+	int count = AXIS == 0 ? size.x : size.y;
+	uvec4 before = uvec4(0u);
+	for (int first = 0; first < count; first += 256)
+	{
+		int at = first + lane;
+		ivec2 texel = AXIS == 0 ? ivec2(at, line) : ivec2(line, at);
+		nook_sums[0][lane] = at < count ? texelFetch(nook_source, ivec3(texel, 0), 0) : uvec4(0u);
+		int from = 0;
+		barrier();
+		for (int stride = 1; stride < 256; stride *= 2)
+		{
+			uvec4 sum = nook_sums[from][lane];
+			if (lane >= stride)
+			{
+				sum += nook_sums[from][lane - stride];
+			}
+			nook_sums[1 - from][lane] = sum;
+			from = 1 - from;
+			barrier();
+		}
+		if (at < count)
+		{
+			imageStore(nook_target, texel, before + nook_sums[from][lane]);
+		}
+		before += nook_sums[from][255];
+		barrier();
+	}
+}
+)";
+
 } // namespace
 
 GlContext::GlContext(GlApi api, std::optional<int> device)
@@ -227,9 +283,9 @@ GlTexture::GlTexture(int width, int height, int channels, const float* values)
 }
 
 GlTexture::GlTexture(const PictureShape& shape)
-	: m_shape(shape), m_target(shape.format == PictureFormat::counts ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D)
+	: m_shape(shape), m_target(shape.format == PictureFormat::counts ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D),
+	  m_name(glGenTextures, glDeleteTextures)
 {
-	glGenTextures(1, &m_name);
 	glBindTexture(m_target, m_name);
 	glTexParameteri(m_target, GL_TEXTURE_MIN_FILTER, shape.levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST);
 	glTexParameteri(m_target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
@@ -251,51 +307,31 @@ GlTexture::GlTexture(const PictureShape& shape)
 	checkGlErrors();
 }
 
-GlTexture::~GlTexture()
+GlLeft::GlLeft(int width, int height) : m_name(glGenRenderbuffers, glDeleteRenderbuffers)
 {
-	glDeleteTextures(1, &m_name);
-}
-
-GlLeft::GlLeft(int width, int height)
-{
-	glGenRenderbuffers(1, &m_name);
 	glBindRenderbuffer(GL_RENDERBUFFER, m_name);
 	glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT16, width, height);
 	checkGlErrors();
 }
 
-GlLeft::~GlLeft()
-{
-	glDeleteRenderbuffers(1, &m_name);
-}
-
-unsigned fragmentProgram(const std::string& fragment_source)
+GlName fragmentProgram(const std::string& fragment_source)
 {
 	const std::string version = epoxy_is_desktop_gl() ? "#version 330 core\n" : "#version 300 es\n";
 	return linkedProgram(
 		{compiledShader(GL_VERTEX_SHADER, version + kVertexSource), compiledShader(GL_FRAGMENT_SHADER, fragment_source)});
 }
 
-GlPass::GlPass(const std::string& fragment_source) : GlPass(fragmentProgram(fragment_source))
+GlPass::GlPass(const std::string& fragment_source) : GlPass(0U)
 {
-	m_owns = true;
-}
-
-GlPass::GlPass(unsigned program) : m_program(program)
-{
-	glGenVertexArrays(1, &m_vertices);
-	glGenBuffers(1, &m_block);
+	m_own = fragmentProgram(fragment_source);
+	m_program = m_own;
 	glUseProgram(m_program);
 }
 
-GlPass::~GlPass()
+GlPass::GlPass(unsigned program)
+	: m_program(program), m_vertices(glGenVertexArrays, glDeleteVertexArrays), m_block(glGenBuffers, glDeleteBuffers)
 {
-	glDeleteBuffers(1, &m_block);
-	glDeleteVertexArrays(1, &m_vertices);
-	if (m_owns)
-	{
-		glDeleteProgram(m_program);
-	}
+	glUseProgram(m_program);
 }
 
 void GlPass::bind(const char* sampler, const GlTexture& texture)
@@ -333,8 +369,7 @@ void GlPass::fill(const GlLeft& left)
 
 double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 {
-	unsigned frame = 0;
-	glGenFramebuffers(1, &frame);
+	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
 	glBindFramebuffer(GL_FRAMEBUFFER, frame);
 	if (target.target() == GL_TEXTURE_2D)
 	{
@@ -379,29 +414,8 @@ double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 	};
 	const double seconds = secondsOf(commands, timer);
 	glDisable(GL_DEPTH_TEST);
-	glDeleteFramebuffers(1, &frame);
 	return seconds;
 }
-
-namespace
-{
-
-std::vector<float> readFloats(const GlTexture& texture, unsigned format, std::size_t channels)
-{
-	const PictureShape& shape = texture.shape();
-	std::vector<float> values(channels * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
-	unsigned frame = 0;
-	glGenFramebuffers(1, &frame);
-	glBindFramebuffer(GL_FRAMEBUFFER, frame);
-	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
-	glPixelStorei(GL_PACK_ALIGNMENT, 4);
-	glReadPixels(0, 0, shape.width, shape.height, format, GL_FLOAT, values.data());
-	glDeleteFramebuffers(1, &frame);
-	checkGlErrors();
-	return values;
-}
-
-} // namespace
 
 std::vector<float> readScalar(const GlTexture& texture)
 {
@@ -417,13 +431,11 @@ std::vector<std::uint32_t> readCounts(const GlTexture& texture, int layer)
 {
 	const PictureShape& shape = texture.shape();
 	std::vector<std::uint32_t> values(4 * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
-	unsigned frame = 0;
-	glGenFramebuffers(1, &frame);
+	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
 	glBindFramebuffer(GL_FRAMEBUFFER, frame);
 	glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture.name(), 0, layer);
 	glPixelStorei(GL_PACK_ALIGNMENT, 4);
 	glReadPixels(0, 0, shape.width, shape.height, GL_RGBA_INTEGER, GL_UNSIGNED_INT, values.data());
-	glDeleteFramebuffers(1, &frame);
 	checkGlErrors();
 	return values;
 }
@@ -449,9 +461,9 @@ unsigned compiledShader(unsigned kind, const std::string& source)
 	return shader;
 }
 
-unsigned linkedProgram(const std::vector<unsigned>& shaders)
+GlName linkedProgram(const std::vector<unsigned>& shaders)
 {
-	const unsigned program = glCreateProgram();
+	GlName program(glCreateProgram(), [](int, const unsigned* name) { glDeleteProgram(*name); });
 	for (const unsigned shader : shaders)
 	{
 		glAttachShader(program, shader);
@@ -465,7 +477,6 @@ unsigned linkedProgram(const std::vector<unsigned>& shaders)
 	glGetProgramiv(program, GL_LINK_STATUS, &good);
 	if (good == 0)
 	{
-		glDeleteProgram(program);
 		throw Error(ExitCode::runtime, "OpenGL: found a program that does not link, expected one that links");
 	}
 	return program;
@@ -482,11 +493,7 @@ void checkGlErrors()
 
 double secondsOf(const std::function<void()>& commands, bool timer)
 {
-	unsigned query = 0;
-	if (timer)
-	{
-		glGenQueries(1, &query);
-	}
+	const GlName query = timer ? GlName(glGenQueries, glDeleteQueries) : GlName();
 	glFinish();
 	const auto start = std::chrono::steady_clock::now();
 	if (timer)
@@ -505,7 +512,6 @@ double secondsOf(const std::function<void()>& commands, bool timer)
 		std::uint64_t nanoseconds = 0;
 		glGetQueryObjectui64v(query, GL_QUERY_RESULT, &nanoseconds);
 		seconds = 1e-9 * static_cast<double>(nanoseconds);
-		glDeleteQueries(1, &query);
 	}
 	checkGlErrors();
 	return seconds;
@@ -522,63 +528,10 @@ void warmUp(const GlContext& context, int repetitions, const std::function<void(
 	}
 }
 
-// This work is based on: W. D. Hillis, G. L. Steele, "Data Parallel Algorithms", CACM 1986 (sums by doubling distances).
-
-namespace
-{
-
-// One work group per row or column; processes 256 entries at a time and carries the sum along.
-constexpr const char* kSource = R"(
-layout(local_size_x = 256) in;
-uniform highp usampler2DArray nook_source;
-layout(rgba32ui) writeonly uniform uimage2D nook_target;
-shared uvec4 nook_sums[2][256];
-void main()
-{
-	int line = int(gl_WorkGroupID.x);
-	int lane = int(gl_LocalInvocationID.x);
-	ivec2 size = textureSize(nook_source, 0).xy;
-	int count = AXIS == 0 ? size.x : size.y;
-	uvec4 before = uvec4(0u);
-	for (int first = 0; first < count; first += 256)
-	{
-		int at = first + lane;
-		ivec2 texel = AXIS == 0 ? ivec2(at, line) : ivec2(line, at);
-		nook_sums[0][lane] = at < count ? texelFetch(nook_source, ivec3(texel, 0), 0) : uvec4(0u);
-		int from = 0;
-		barrier();
-		for (int stride = 1; stride < 256; stride *= 2)
-		{
-			uvec4 sum = nook_sums[from][lane];
-			if (lane >= stride)
-			{
-				sum += nook_sums[from][lane - stride];
-			}
-			nook_sums[1 - from][lane] = sum;
-			from = 1 - from;
-			barrier();
-		}
-		if (at < count)
-		{
-			imageStore(nook_target, texel, before + nook_sums[from][lane]);
-		}
-		before += nook_sums[from][255];
-		barrier();
-	}
-}
-)";
-
-} // namespace
-
 GlScan::GlScan(int axis)
 	: m_axis(axis), m_program(linkedProgram(
 						{compiledShader(GL_COMPUTE_SHADER, "#version 430 core\n#define AXIS " + std::to_string(axis) + kSource)}))
 {
-}
-
-GlScan::~GlScan()
-{
-	glDeleteProgram(m_program);
 }
 
 double GlScan::run(const GlTexture& source, const GlTexture& target, int layer, bool timer)
@@ -605,10 +558,7 @@ GlSession::GlSession(std::optional<int> device) : m_context(GlApi::core, device)
 GlSession::~GlSession()
 {
 	m_context.use();
-	for (const auto& [source, program] : m_programs)
-	{
-		glDeleteProgram(program);
-	}
+	m_programs.clear();
 }
 
 const GlContext& GlSession::use() const

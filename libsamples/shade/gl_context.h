@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace nook
@@ -51,6 +52,44 @@ private:
 	void* m_context = nullptr;
 };
 
+// The name of an OpenGL object, which goes with it. Requires the object's context.
+class GlName
+{
+public:
+	using Make = void (*)(int count, unsigned* names);
+	using Delete = void (*)(int count, const unsigned* names);
+
+	GlName() = default;
+	GlName(unsigned name, Delete destroy) : m_name(name), m_delete(destroy) {}
+	GlName(Make make, Delete destroy) : m_delete(destroy)
+	{
+		make(1, &m_name);
+	}
+	GlName(GlName&& other) noexcept : m_name(std::exchange(other.m_name, 0U)), m_delete(other.m_delete) {}
+	GlName& operator=(GlName&& other) noexcept
+	{
+		std::swap(m_name, other.m_name);
+		std::swap(m_delete, other.m_delete);
+		return *this;
+	}
+	~GlName()
+	{
+		if (m_name != 0)
+		{
+			m_delete(1, &m_name);
+		}
+	}
+
+	operator unsigned() const // NOLINT: it stands for the object
+	{
+		return m_name;
+	}
+
+private:
+	unsigned m_name = 0;
+	Delete m_delete = nullptr;
+};
+
 // A texture read by texelFetch. Requires a context.
 class GlTexture
 {
@@ -60,9 +99,6 @@ public:
 
 	// Empty, with levels or layers. An array texture if the format is counts.
 	explicit GlTexture(const PictureShape& shape);
-	~GlTexture();
-	GlTexture(const GlTexture&) = delete;
-	GlTexture& operator=(const GlTexture&) = delete;
 
 	unsigned name() const
 	{
@@ -80,7 +116,7 @@ public:
 private:
 	PictureShape m_shape;
 	unsigned m_target = 0;
-	unsigned m_name = 0;
+	GlName m_name;
 };
 
 // Marks the pixels that one pass discarded, for a later pass to fill. Uses a depth buffer, so skipped pixels cost almost nothing.
@@ -88,9 +124,6 @@ class GlLeft
 {
 public:
 	GlLeft(int width, int height);
-	~GlLeft();
-	GlLeft(const GlLeft&) = delete;
-	GlLeft& operator=(const GlLeft&) = delete;
 
 	unsigned name() const
 	{
@@ -98,11 +131,11 @@ public:
 	}
 
 private:
-	unsigned m_name = 0;
+	GlName m_name;
 };
 
 // A program that runs this shader for every pixel of a picture. Throws Error (runtime) with the compiler's first error line.
-unsigned fragmentProgram(const std::string& fragment_source);
+GlName fragmentProgram(const std::string& fragment_source);
 
 // Runs a fragment shader once for every pixel of a picture.
 class GlPass
@@ -113,9 +146,6 @@ public:
 
 	// Uses a program that outlives it (fragmentProgram()).
 	explicit GlPass(unsigned program);
-	~GlPass();
-	GlPass(const GlPass&) = delete;
-	GlPass& operator=(const GlPass&) = delete;
 
 	void bind(const char* sampler, const GlTexture& texture);
 	void bindBlock(const char* block, std::span<const std::byte> bytes);
@@ -123,8 +153,7 @@ public:
 	// Sets a uniform ivec4; ignored if the program has no such uniform.
 	void setIntegers(const char* name, const glm::ivec4& values);
 
-	// From now on, records the pixels that it discards, or fills only those. `left` has the target's size and must outlive the
-	// pass.
+	// Records the pixels that it discards, or fills only those. `left` has the target's size and must outlive the pass.
 	void leave(const GlLeft& left);
 	void fill(const GlLeft& left);
 
@@ -139,10 +168,10 @@ private:
 		const GlTexture* texture = nullptr;
 	};
 
+	GlName m_own; // the program, if it is the pass's own
 	unsigned m_program = 0;
-	bool m_owns = false; // owns the program
-	unsigned m_vertices = 0;
-	unsigned m_block = 0;
+	GlName m_vertices;
+	GlName m_block;
 	std::vector<Unit> m_units;
 	const GlLeft* m_left = nullptr;
 	bool m_fills = false;
@@ -161,7 +190,7 @@ std::vector<std::uint32_t> readCounts(const GlTexture& texture, int layer);
 unsigned compiledShader(unsigned kind, const std::string& source);
 
 // Deletes the shaders. Throws Error (runtime).
-unsigned linkedProgram(const std::vector<unsigned>& shaders);
+GlName linkedProgram(const std::vector<unsigned>& shaders);
 
 // Throws Error (runtime) for errors since the last call.
 void checkGlErrors();
@@ -179,16 +208,13 @@ class GlScan
 public:
 	// Along x (0) or y (1). Requires a context with compute shaders.
 	explicit GlScan(int axis);
-	~GlScan();
-	GlScan(const GlScan&) = delete;
-	GlScan& operator=(const GlScan&) = delete;
 
 	// Scans layer 0 of `source` into a layer of `target`, which has the same size, and waits. Returns seconds like GlPass::draw.
 	double run(const GlTexture& source, const GlTexture& target, int layer, bool timer);
 
 private:
 	int m_axis;
-	unsigned m_program = 0;
+	GlName m_program;
 };
 
 // A persistent context with its linked programs, so that a series of pictures compiles each shader once.
@@ -210,7 +236,7 @@ public:
 
 private:
 	GlContext m_context;
-	std::map<std::string, unsigned> m_programs; // by source text
+	std::map<std::string, GlName> m_programs; // by source text
 };
 
 } // namespace nook

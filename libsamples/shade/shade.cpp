@@ -174,122 +174,6 @@ void draw(const ShadePass& pass, const shade_kernels::Kernels& kernels, PictureP
 	parallelFor(height, run.threads, row);
 }
 
-} // namespace
-
-std::vector<Planes> picturesFor(const ShadePlan& plan)
-{
-	return mapped(plan.pictures, [](const PictureShape& shape) { return planesOf(shape); });
-}
-
-void runPass(const ShadePass& pass, const shade_kernels::Kernels& inputs, std::vector<Planes>& pictures, const RunSettings& run)
-{
-	shade_kernels::Kernels kernels = inputs;
-	connect(pass, pictures, kernels);
-	PicturePlane& plane = pictures[pass.picture][static_cast<std::size_t>(pass.level + pass.layer)];
-	if (pass.scans)
-	{
-		scanOnCpu(kernels.tables[0], pass.block.axis, plane, run);
-	}
-	else
-	{
-		draw(pass, kernels, plane, run);
-	}
-}
-
-namespace
-{
-
-constexpr std::size_t kBand = 64; // columns summed at a time per thread
-
-} // namespace
-
-void scanOnCpu(const PicturePlane& source, int axis, PicturePlane& target, const RunSettings& run)
-{
-	assert(source.counts.size() == target.counts.size() && source.width == target.width);
-	const std::size_t row = source.index(0, 1);
-	const auto height = static_cast<std::size_t>(source.height);
-	if (axis == 0)
-	{
-		parallelFor(height, run.threads,
-					[&](std::size_t y)
-					{
-						std::array<std::uint32_t, 4> sum{};
-						for (std::size_t i = y * row; i < (y + 1) * row; ++i)
-						{
-							sum[i % 4] += source.counts[i];
-							target.counts[i] = sum[i % 4];
-						}
-					});
-		return;
-	}
-	parallelFor((row / 4 + kBand - 1) / kBand, run.threads,
-				[&](std::size_t band)
-				{
-					const std::size_t first = 4 * kBand * band;
-					const std::size_t end = std::min(row, first + 4 * kBand);
-					for (std::size_t y = 0; y < height; ++y)
-					{
-						for (std::size_t i = y * row + first; i < y * row + end; ++i)
-						{
-							target.counts[i] = source.counts[i] + (y > 0 ? target.counts[i - row] : 0U);
-						}
-					}
-				});
-}
-
-PassTime passTimeOf(const std::string& name, std::vector<double> seconds)
-{
-	seconds.erase(seconds.begin(), seconds.begin() + (seconds.size() > 1 ? 1 : 0));
-	const std::vector<double> drawings = seconds;
-	const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
-	std::nth_element(seconds.begin(), middle, seconds.end());
-	return {name, *middle, drawings};
-}
-
-void setResult(Shaded& shaded, std::vector<float> values, bool quads)
-{
-	if (!quads)
-	{
-		shaded.visibility = std::move(values);
-		return;
-	}
-	for (std::size_t i = 0; i < values.size(); i += 4)
-	{
-		shaded.bent.emplace_back(values[i], values[i + 1], values[i + 2]);
-		shaded.visibility.push_back(values[i + 3]);
-	}
-}
-
-PassTimes::PassTimes(const ShadePlan& plan) : m_seconds(plan.passes.size())
-{
-	for (const ShadePass& pass : plan.passes)
-	{
-		m_names.push_back(pass.kernel.name);
-	}
-}
-
-int PassTimes::drawings(const DrawSettings& settings)
-{
-	return settings.repetitions + 1;
-}
-
-void PassTimes::add(std::size_t pass, double seconds)
-{
-	m_seconds[pass].push_back(seconds);
-}
-
-void PassTimes::finish(Shaded& shaded) const
-{
-	for (std::size_t i = 0; i < m_names.size(); ++i)
-	{
-		shaded.passes.push_back(passTimeOf(m_names[i], m_seconds[i]));
-		shaded.seconds += shaded.passes.back().seconds;
-	}
-}
-
-namespace
-{
-
 constexpr std::array<const char*, 5> kSamplers{"nook_cells", "nook_packed", "nook_levels", "nook_tables",
 											   "nook_range"}; // in the order of ShadeSlot
 
@@ -305,8 +189,7 @@ bool usesCompute(const GlContext& context, const ShadeSettings& settings)
 	return builder == TableBuilder::compute || (builder == TableBuilder::automatic && automatic);
 }
 
-// A G-buffer and its samples on the GPU. Row 0 of a texture is the top row; gl_FragCoord counts the same way, since nothing is
-// displayed.
+// A G-buffer and its samples on the GPU. Row 0 is the top row, also in gl_FragCoord, since nothing is displayed.
 struct Inputs
 {
 	GlTexture depths;
@@ -348,6 +231,109 @@ std::unique_ptr<GlPass> programOf(GlSession& session, const ShadePass& pass, con
 }
 
 } // namespace
+
+std::vector<Planes> picturesFor(const ShadePlan& plan)
+{
+	return mapped(plan.pictures, [](const PictureShape& shape) { return planesOf(shape); });
+}
+
+void runPass(const ShadePass& pass, const shade_kernels::Kernels& inputs, std::vector<Planes>& pictures, const RunSettings& run)
+{
+	shade_kernels::Kernels kernels = inputs;
+	connect(pass, pictures, kernels);
+	PicturePlane& plane = pictures[pass.picture][static_cast<std::size_t>(pass.level + pass.layer)];
+	if (pass.scans)
+	{
+		scanOnCpu(kernels.tables[0], pass.block.axis, plane, run);
+	}
+	else
+	{
+		draw(pass, kernels, plane, run);
+	}
+}
+
+void scanOnCpu(const PicturePlane& source, int axis, PicturePlane& target, const RunSettings& run)
+{
+	assert(source.counts.size() == target.counts.size() && source.width == target.width);
+	const std::size_t row = source.index(0, 1);
+	const auto height = static_cast<std::size_t>(source.height);
+	if (axis == 0)
+	{
+		parallelFor(height, run.threads,
+					[&](std::size_t y)
+					{
+						std::array<std::uint32_t, 4> sum{};
+						for (std::size_t i = y * row; i < (y + 1) * row; ++i)
+						{
+							sum[i % 4] += source.counts[i];
+							target.counts[i] = sum[i % 4];
+						}
+					});
+		return;
+	}
+	constexpr std::size_t kBand = 64; // columns summed at a time per thread
+	parallelFor((row / 4 + kBand - 1) / kBand, run.threads,
+				[&](std::size_t band)
+				{
+					const std::size_t first = 4 * kBand * band;
+					const std::size_t end = std::min(row, first + 4 * kBand);
+					for (std::size_t y = 0; y < height; ++y)
+					{
+						for (std::size_t i = y * row + first; i < y * row + end; ++i)
+						{
+							target.counts[i] = source.counts[i] + (y > 0 ? target.counts[i - row] : 0U);
+						}
+					}
+				});
+}
+
+PassTime passTimeOf(const std::string& name, std::vector<double> seconds)
+{
+	seconds.erase(seconds.begin(), seconds.begin() + (seconds.size() > 1 ? 1 : 0));
+	const std::vector<double> drawings = seconds;
+	const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
+	std::nth_element(seconds.begin(), middle, seconds.end());
+	return {name, *middle, drawings};
+}
+
+void setResult(Shaded& shaded, std::vector<float> values, bool quads)
+{
+	if (!quads)
+	{
+		shaded.visibility = std::move(values);
+		return;
+	}
+	for (std::size_t i = 0; i < values.size(); i += 4)
+	{
+		shaded.bent.emplace_back(values[i], values[i + 1], values[i + 2]);
+		shaded.visibility.push_back(values[i + 3]);
+	}
+}
+
+PassTimes::PassTimes(const ShadePlan& plan)
+	: m_names(mapped(plan.passes, [](const ShadePass& pass) { return std::string(pass.kernel.name); })),
+	  m_seconds(plan.passes.size())
+{
+}
+
+int PassTimes::drawings(const DrawSettings& settings)
+{
+	return settings.repetitions + 1;
+}
+
+void PassTimes::add(std::size_t pass, double seconds)
+{
+	m_seconds[pass].push_back(seconds);
+}
+
+void PassTimes::finish(Shaded& shaded) const
+{
+	for (std::size_t i = 0; i < m_names.size(); ++i)
+	{
+		shaded.passes.push_back(passTimeOf(m_names[i], m_seconds[i]));
+		shaded.seconds += shaded.passes.back().seconds;
+	}
+}
 
 Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, const DrawSettings& drawing)
 {

@@ -61,8 +61,7 @@ struct DrawSettings
 Shaded shadeOnCpu(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, const RunSettings& run,
 				  const DrawSettings& drawing = {});
 
-// Uses headless OpenGL 3.3 (EGL); times by GPU timers, or by the clock for software OpenGL. Throws Error (unsupported) if no
-// context can be created.
+// Headless OpenGL 3.3 (EGL), timed by the GPU, or by the clock if it is software. Throws Error (unsupported) without a context.
 Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings,
 				 const DrawSettings& drawing = {});
 

@@ -1,37 +1,38 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #[[
-Emits the GLSL module while the project builds, with patterns made for it, and lets a target include what it needs.
+Emits a shader module while the project builds, with patterns made for it, and lets a target include what it needs.
 
 	nook_add_module(TARGET NAME name METHODS vo-line|vo-point|vo-area|alchemy|statvo|slices...|aov|aov-mask
-		[COUNTS N...|PATTERNS file...] GLSL 330|430|es300|vulkan|HLSL 60 [RECIPE rays|paper|file] [TILE size] [PATTERN_OPTIONS ...]
-		[TILE_OPTIONS ...] [OPTIONS ...] [EMBED] [SCRIPT] [OUTPUTS variable] [SAMPLES variable])
+		[COUNTS N...|PATTERNS file...] GLSL 330|430|es300|vulkan|HLSL 60|WGSL [RECIPE rays|paper|file] [TILE size] [PATTERN_OPTIONS ...]
+		[TILE_OPTIONS ...] [OPTIONS ...] [FORMATS js|cs|py|json...] [EMBED] [SCRIPT] [OUTPUTS variable] [SAMPLES variable])
 
 TARGET           a target of this project; it is built after the files and finds them by #include "NAME.h"
 NAME             of the files: NAME.glsl, and NAME.h, which fills the module's uniform block and holds its tiles
 METHODS          what the module offers; or alone: aov or aov-mask, the stages that draw the files of nook_add_volumes, without
-                 NAME.h; aov-mask not for es300
+                 NAME.h; aov-mask not for es300 and WGSL
 COUNTS           samples of each method but statvo and slices, in the same order: patterns and tiles are made for them; with slices
                  counted in as well, a tile is made of that many slices in each pixel, in place of the kernel's own
 PATTERNS         or else a file for each of them, of nook pattern or nook tile
-GLSL, HLSL       the module's language; with HLSL the file is NAME.hlsl
+GLSL, HLSL, WGSL the module's language; the file is NAME.glsl, NAME.hlsl or NAME.wgsl
 RECIPE           where settings come from: rays where absent, paper, or a file of nook fit
 TILE             with COUNTS: side of the window in which every pixel has samples of its own; 4 where absent, 1 for none
 PATTERN_OPTIONS  with COUNTS: more options of `nook pattern`: --starts 64, --seed 3, ...
 TILE_OPTIONS     with COUNTS: more options of `nook tile`: --kind random, ...
 OPTIONS          more options of `nook emit`: --filter bilateral, --resolution half, --namespace low, ...
+FORMATS          endings of more files: js, cs and py fill the block in JavaScript, C# and Python, json describes it
 EMBED            NAME.glsl.h as well, for programs that keep their shaders inside: the same text as the array NAME_glsl
-SCRIPT           NAME.js as well, the module and what fills its block for JavaScript
-OUTPUTS          variable that receives the paths of NAME.glsl and NAME.h, and of NAME.js and NAME.glsl.h
+SCRIPT           the same as FORMATS js
+OUTPUTS          variable that receives the paths of NAME.glsl and NAME.h, of the FORMATS, and of NAME.glsl.h
 SAMPLES          variable that receives the files of the samples: PATTERNS of another module of the same target
 
 A file is made again when its options, its patterns, its recipe or the program change, and not otherwise.
 ]]
 function(nook_add_module target)
 	set(one NAME GLSL HLSL RECIPE TILE OUTPUTS SAMPLES)
-	set(many METHODS COUNTS PATTERNS PATTERN_OPTIONS TILE_OPTIONS OPTIONS)
-	cmake_parse_arguments(PARSE_ARGV 1 arg "EMBED;SCRIPT" "${one}" "${many}")
+	set(many METHODS COUNTS PATTERNS PATTERN_OPTIONS TILE_OPTIONS OPTIONS FORMATS)
+	cmake_parse_arguments(PARSE_ARGV 1 arg "EMBED;SCRIPT;WGSL" "${one}" "${many}")
 	if(arg_UNPARSED_ARGUMENTS)
-		message(FATAL_ERROR "nook_add_module: found '${arg_UNPARSED_ARGUMENTS}', expected EMBED, SCRIPT, ${one} or ${many}")
+		message(FATAL_ERROR "nook_add_module: found '${arg_UNPARSED_ARGUMENTS}', expected EMBED, SCRIPT, WGSL, ${one} or ${many}")
 	endif()
 	if(NOT TARGET ${target})
 		message(FATAL_ERROR "nook_add_module: found no target '${target}', expected one of this project")
@@ -40,7 +41,12 @@ function(nook_add_module target)
 		message(FATAL_ERROR "nook_add_module: NAME: found '${arg_NAME}', expected a name as C takes it")
 	endif()
 	set(language glsl)
-	if(DEFINED arg_HLSL)
+	if(arg_WGSL)
+		if(DEFINED arg_GLSL OR DEFINED arg_HLSL)
+			message(FATAL_ERROR "nook_add_module: found WGSL with GLSL or HLSL, expected one language")
+		endif()
+		set(language wgsl)
+	elseif(DEFINED arg_HLSL)
 		if(NOT arg_HLSL STREQUAL "60" OR DEFINED arg_GLSL)
 			message(FATAL_ERROR "nook_add_module: HLSL: found '${arg_HLSL}', expected 60, without GLSL")
 		endif()
@@ -49,9 +55,9 @@ function(nook_add_module target)
 		message(FATAL_ERROR "nook_add_module: GLSL: found '${arg_GLSL}', expected 330, 430, es300 or vulkan")
 	endif()
 	_nook_check_methods("${arg_METHODS}" "${arg_COUNTS}" "${arg_PATTERNS}" sampled)
-	_nook_check_options(nook_add_module "${arg_OPTIONS}" -o --methods --patterns --glsl --hlsl --recipe)
-	if(arg_METHODS STREQUAL "aov-mask" AND arg_GLSL STREQUAL "es300")
-		message(FATAL_ERROR "nook_add_module: GLSL: found 'es300', expected 330, 430 or vulkan for aov-mask")
+	_nook_check_options(nook_add_module "${arg_OPTIONS}" -o --methods --patterns --glsl --hlsl --wgsl --recipe)
+	if(arg_METHODS STREQUAL "aov-mask" AND (arg_GLSL STREQUAL "es300" OR arg_WGSL))
+		message(FATAL_ERROR "nook_add_module: GLSL: found '${arg_GLSL}', expected 330, 430 or vulkan, or HLSL, for aov-mask")
 	endif()
 	if(arg_PATTERNS AND (DEFINED arg_TILE OR arg_PATTERN_OPTIONS OR arg_TILE_OPTIONS))
 		message(FATAL_ERROR "nook_add_module: found TILE, PATTERN_OPTIONS or TILE_OPTIONS with PATTERNS, expected them with COUNTS")
@@ -62,8 +68,17 @@ function(nook_add_module target)
 	if(NOT arg_TILE MATCHES "^[1-9][0-9]*$")
 		message(FATAL_ERROR "nook_add_module: TILE: found '${arg_TILE}', expected the side of a window, 1 or more")
 	endif()
-	if(arg_METHODS MATCHES "^aov" AND (DEFINED arg_RECIPE OR arg_SCRIPT))
-		message(FATAL_ERROR "nook_add_module: found RECIPE or SCRIPT with ${arg_METHODS}, expected neither")
+	if(arg_SCRIPT)
+		list(APPEND arg_FORMATS js)
+		list(REMOVE_DUPLICATES arg_FORMATS)
+	endif()
+	foreach(format IN LISTS arg_FORMATS)
+		if(NOT format MATCHES "^(js|cs|py|json)$")
+			message(FATAL_ERROR "nook_add_module: FORMATS: found '${format}', expected some of js, cs, py, json")
+		endif()
+	endforeach()
+	if(arg_METHODS MATCHES "^aov" AND (DEFINED arg_RECIPE OR arg_FORMATS))
+		message(FATAL_ERROR "nook_add_module: found RECIPE, FORMATS or SCRIPT with ${arg_METHODS}, expected none of them")
 	endif()
 	if(arg_COUNTS AND "slices" IN_LIST sampled AND arg_TILE EQUAL 1)
 		message(FATAL_ERROR "nook_add_module: TILE: found '1' with COUNTS of slices, expected 2 or more, since theirs is a tile")
@@ -91,10 +106,10 @@ function(nook_add_module target)
 		list(APPEND outputs "${folder}/${arg_NAME}.h")
 		set(header -o "${folder}/${arg_NAME}.h")
 	endif()
-	if(arg_SCRIPT)
-		list(APPEND outputs "${folder}/${arg_NAME}.js")
-		list(APPEND header -o "${folder}/${arg_NAME}.js")
-	endif()
+	foreach(format IN LISTS arg_FORMATS)
+		list(APPEND outputs "${folder}/${arg_NAME}.${format}")
+		list(APPEND header -o "${folder}/${arg_NAME}.${format}")
+	endforeach()
 	list(JOIN arg_METHODS "," methods)
 	set(recipe "")
 	set(read ${patterns})

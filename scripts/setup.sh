@@ -12,7 +12,7 @@ packages="g++ cmake ninja-build make ccache git pkg-config
 	libcgal-dev libboost-dev libeigen3-dev libopenimageio-dev libopenexr-dev libpng-dev libjpeg-dev zlib1g-dev libglm-dev libtbb-dev libcli11-dev nlohmann-json3-dev
 	libmeshoptimizer-dev libdraco-dev libembree-dev libepoxy-dev"
 tests="clang llvm libclang-rt-14-dev libglfw3-dev libegl-dev libegl-mesa0 libgl1-mesa-dri
-	catch2 libbenchmark-dev libvulkan-dev mesa-vulkan-drivers glslang-tools spirv-tools openimageio-tools xz-utils locales qemu-user-static xvfb xauth chromium firefox-esr fonts-dejavu-core mkdocs python3-numpy mono-mcs mono-runtime abigail-tools"
+	catch2 libbenchmark-dev libvulkan-dev mesa-vulkan-drivers glslang-tools spirv-tools spirv-cross openimageio-tools xz-utils locales qemu-user-static xvfb xauth chromium firefox-esr fonts-dejavu-core mkdocs python3-numpy mono-mcs mono-runtime abigail-tools"
 
 # For Khronos' glTF validator in one test. Other Node.js builds include npm and conflict with Debian's.
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then

@@ -205,6 +205,22 @@ END { check(last, all) }
 AWK
 grep -v -e CHANGELOG -e docs/glossary.md -e '^patterns' -e '^tests' "$folder/pages" | xargs awk -v file="$folder/names" -f "$folder/first.awk" >>"$folder/dead"
 
+# Lines of the examples in docs/guide/engines.md; in examples/ogre also those for nook: a line with a comment `nook`, or after one down
+# to an empty line.
+for example in ogre godot godot4; do
+	lines=$(cat $(grep "^examples/$example/.*[.]" "$folder/files") | wc -l)
+	grep -q "^| \[.examples/$example.\](.*| $lines |" docs/guide/engines.md || echo "docs/guide/engines.md: found another count of lines of examples/$example, expected $lines" >>"$folder/dead"
+done
+sum=0
+for file in CMakeLists.txt main.cpp media/nook.material media/nook.compositor; do
+	lines=$(awk '/^[ \t]*$/ { on = 0 } /^[ \t]*(\/\/|#) nook: / { on = 1 }
+		file ~ /material/ { on = 1 } /(\/\/|#) nook/ && !/^[ \t]*(\/\/|#) / { ++count; next } on && !/^[ \t]*((\/\/|#) .*|[{}]*)$/ { ++count } END { print count }' \
+		file=$file "examples/ogre/$file")
+	sum=$((sum + lines))
+	grep -q "^| .$file. |.*| $lines |" docs/guide/engines.md || echo "docs/guide/engines.md: found another count of lines for nook in $file, expected $lines" >>"$folder/dead"
+done
+[ $sum -le 60 ] && grep -q "^| \[.examples/ogre.\](.*| $sum |" docs/guide/engines.md || echo "docs/guide/engines.md: found another count of lines for nook in OGRE, expected $sum, at most 60" >>"$folder/dead"
+
 checks=$(cat "$folder/links" "$folder/named" "$folder/paths" "$folder/commands" "$folder/names" | wc -l)
 while read -r line; do
 	problem "$line"

@@ -106,6 +106,8 @@ try "found no target 'b'" 'nook_add_module(b NAME m METHODS vo-line COUNTS 3 GLS
 try "NAME: found ''" 'nook_add_module(a METHODS vo-line COUNTS 3 GLSL 330)'
 try "GLSL: found '110'" 'nook_add_module(a NAME m METHODS vo-line COUNTS 3 GLSL 110)'
 try "HLSL: found '50'" 'nook_add_module(a NAME m METHODS vo-line COUNTS 3 HLSL 50)'
+try "found WGSL with GLSL" 'nook_add_module(a NAME m METHODS vo-line COUNTS 3 GLSL 330 WGSL)'
+try "FORMATS: found 'rs'" 'nook_add_module(a NAME m METHODS vo-line COUNTS 3 WGSL FORMATS js rs)'
 try "METHODS: found none" 'nook_add_module(a NAME m COUNTS 3 GLSL 330)'
 try "METHODS: found 'gtao', expected some of vo-line" 'nook_add_module(a NAME m METHODS gtao COUNTS 3 GLSL 330)'
 try "found 1 COUNTS and 0 PATTERNS, expected 2" 'nook_add_module(a NAME m METHODS vo-line vo-point COUNTS 3 GLSL 330)'
@@ -117,8 +119,9 @@ try "found TILE, PATTERN_OPTIONS" 'nook_add_module(a NAME m METHODS vo-line PATT
 try "found 'SEED" 'nook_add_module(a NAME m SEED 3 METHODS vo-line COUNTS 3 GLSL 330)'
 try "found 0 COUNTS and 0 PATTERNS, expected 1 of one of them, as METHODS that take samples, or 2 with slices" 'nook_add_module(a NAME m METHODS slices vo-line GLSL 330)'
 try "TILE: found '1' with COUNTS of slices" 'nook_add_module(a NAME m METHODS slices COUNTS 2 TILE 1 GLSL 330)'
-try "found RECIPE or SCRIPT with aov" 'nook_add_module(a NAME m METHODS aov SCRIPT GLSL 330)'
-try "GLSL: found 'es300', expected 330, 430 or vulkan for aov-mask" 'nook_add_module(a NAME m METHODS aov-mask GLSL es300)'
+try "found RECIPE, FORMATS or SCRIPT with aov" 'nook_add_module(a NAME m METHODS aov SCRIPT GLSL 330)'
+try "GLSL: found '', expected 330, 430 or vulkan, or HLSL, for aov-mask" 'nook_add_module(a NAME m METHODS aov-mask WGSL)'
+try "GLSL: found 'es300', expected 330, 430 or vulkan, or HLSL, for aov-mask" 'nook_add_module(a NAME m METHODS aov-mask GLSL es300)'
 try "OPTIONS: found '--recipe', expected" 'nook_add_module(a NAME m METHODS slices GLSL 330 OPTIONS --recipe paper)'
 try "OPTIONS: found '-o', expected" 'nook_add_module(a NAME m METHODS slices GLSL 330 OPTIONS --filter bilateral -o m.js)'
 try "found 'm' twice" 'nook_add_module(a NAME m METHODS vo-line COUNTS 3 GLSL 330)
@@ -205,6 +208,10 @@ nook_add_module(emits NAME fitted METHODS slices RECIPE recipe.json GLSL 430 SCR
 nook_add_module(emits NAME tiled METHODS vo-line slices COUNTS 3 2 TILE 2 RECIPE paper GLSL vulkan OPTIONS --normals from-depth
 	PATTERN_OPTIONS --method vogel TILE_OPTIONS --starts 1)
 nook_add_module(emits NAME masks METHODS aov-mask GLSL 430 OPTIONS --directions 64)
+nook_add_module(emits NAME shaders METHODS slices WGSL FORMATS cs py json EMBED OUTPUTS others)
+if(NOT others MATCHES "shaders.wgsl;.*shaders.h;.*shaders.cs;.*shaders.py;.*shaders.json;.*shaders.wgsl.h$")
+	message(FATAL_ERROR "OUTPUTS: found ${others}, expected shaders.wgsl, .h, .cs, .py, .json and .wgsl.h")
+endif()
 if(NOT files MATCHES "fitted.js$")
 	message(FATAL_ERROR "OUTPUTS: found ${files}, expected fitted.js last")
 endif()
@@ -214,7 +221,7 @@ for generator in Ninja "Unix Makefiles"; do
 	cp "$folder/emits/recipe.json" "$folder/recipe.json"
 	step "emits, $generator: configure" cmake -G "$generator" -S "$folder/emits" -B "$out" "-DCMAKE_PREFIX_PATH=$prefix" || finish
 	step "emits, $generator: build" cmake --build "$out" -j 4
-	expect_made 6 "emits, $generator: three modules, a pattern and two tiles"
+	expect_made 7 "emits, $generator: four modules, a pattern and two tiles"
 	step "emits, $generator: run" "$out/emits"
 	made="$out/nook_patterns/emits"
 	step "emits, $generator: slices" grep -Fq "vec4 nookSlicesOpen(ivec2 pixel)" "$made/fitted.glsl"
@@ -222,6 +229,11 @@ for generator in Ninja "Unix Makefiles"; do
 	step "emits, $generator: device depth" grep -Fq "settings.device_depth = true;" "$made/fitted.h"
 	step "emits, $generator: a tile of slices" grep -Fq "inline constexpr int nook_slices_tile_height = 2;" "$made/tiled.h"
 	step "emits, $generator: masks" grep -Fq "float(covered) / 64.0" "$made/masks.glsl"
+	step "emits, $generator: WGSL" grep -Fq "fn nookSlices(pixel" "$made/shaders.wgsl"
+	step "emits, $generator: C#" grep -Fq "static Block Fill(" "$made/shaders.cs"
+	step "emits, $generator: Python" grep -Fq "def slices_settings(reach" "$made/shaders.py"
+	step "emits, $generator: JSON" grep -Fq '"schema":"nook.module/1"' "$made/shaders.json"
+	step "emits, $generator: embedded" grep -Fq "char shaders_wgsl[]" "$made/shaders.wgsl.h"
 	step "emits, $generator: again" cmake --build "$out"
 	expect_made 0 "emits, $generator: nothing changed"
 	sleep 1

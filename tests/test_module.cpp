@@ -272,7 +272,7 @@ namespace
 {
 
 // A camera as an engine holds it: 90 degrees high, twice as wide, near 0.1. The table in docs/reference/modules.md says what to
-// pass.
+// pass, and the engine's sources which row its textures begin with.
 struct EngineCamera
 {
 	const char* engines;
@@ -281,39 +281,78 @@ struct EngineCamera
 	bool left_handed;
 	bool zero_to_one;
 	int first_row_ndc_y;
+	bool top_first; // row 0 of a texture that the engine draws shows the top of the scene
 };
 
-constexpr double kNearShare = 0.1 / (0.1 - 100.0); // near / (near - far) with far = 100
+constexpr double kNear = 0.1 / (0.1 - 100.0); // near / (near - far) with far = 100
 const EngineCamera kEngineCameras[] = {
-	{"Direct3D, bgfx with z from 0 to 1",
-	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 - kNearShare, 1, 0, 0, 100 * kNearShare, 0},
+	{"Direct3D; bgfx with z from 0 to 1",
+	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 - kNear, 1, 0, 0, 100 * kNear, 0},
 	 false,
 	 true,
 	 true,
-	 1},
-	{"Unity, camera.projectionMatrix",
-	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2 * kNearShare - 1, -1, 0, 0, 200 * kNearShare, 0},
+	 1,
+	 true},
+	{"Unity, camera.projectionMatrix, on OpenGL also through GL.GetGPUProjectionMatrix; three.js; Babylon.js, right-handed",
+	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2 * kNear - 1, -1, 0, 0, 200 * kNear, 0},
 	 false,
 	 false,
 	 false,
-	 -1},
-	{"Unity, GL.GetGPUProjectionMatrix",
-	 {0.5, 0, 0, 0, 0, -1, 0, 0, 0, 0, -kNearShare, -1, 0, 0, -100 * kNearShare, 0},
+	 -1,
+	 false},
+	{"Unity, GL.GetGPUProjectionMatrix: reversed, upside down",
+	 {0.5, 0, 0, 0, 0, -1, 0, 0, 0, 0, -kNear, -1, 0, 0, -100 * kNear, 0},
 	 false,
 	 false,
 	 true,
-	 1},
-	{"Unreal: reversed, infinite", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0.1, 0}, false, true, true, 1},
-	{"Godot 4.3: reversed", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, -kNearShare, -1, 0, 0, -100 * kNearShare, 0}, false, false, true, 1},
-	{"three.js", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2 * kNearShare - 1, -1, 0, 0, 200 * kNearShare, 0}, false, false, false, -1},
-	{"Babylon.js, left-handed",
-	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 - 2 * kNearShare, 1, 0, 0, 200 * kNearShare, 0},
+	 1,
+	 false},
+	{"Unreal: reversed, infinite", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0.1, 0}, false, true, true, 1, true},
+	{"Godot 4.3, RenderSceneData.get_cam_projection: reversed, upside down",
+	 {0.5, 0, 0, 0, 0, -1, 0, 0, 0, 0, -kNear, -1, 0, 0, -100 * kNear, 0},
+	 false,
+	 false,
+	 true,
+	 -1,
+	 true},
+	{"Godot 4.3, Compatibility: reversed without clip control, upside down",
+	 {0.5, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1 - 2 * kNear, -1, 0, 0, -200 * kNear, 0},
+	 false,
+	 false,
+	 false,
+	 -1,
+	 true},
+	{"three.js, reversedDepthBuffer",
+	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, -kNear, -1, 0, 0, -100 * kNear, 0},
+	 false,
+	 false,
+	 true,
+	 -1,
+	 false},
+	{"Babylon.js, left-handed; bgfx on OpenGL",
+	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 - 2 * kNear, 1, 0, 0, 200 * kNear, 0},
 	 false,
 	 true,
 	 false,
-	 -1},
-	{"OGRE: rows", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2 * kNearShare - 1, 200 * kNearShare, 0, 0, -1, 0}, true, false, false, -1},
-	{"Filament: reversed, infinite", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0}, false, false, true, 1},
+	 -1,
+	 false},
+	{"Babylon.js, WebGPU, left-handed: turns y of what it draws into textures",
+	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 - kNear, 1, 0, 0, 100 * kNear, 0},
+	 false,
+	 true,
+	 true,
+	 -1,
+	 false},
+	{"Babylon.js, WebGPU, right-handed",
+	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, kNear - 1, -1, 0, 0, 100 * kNear, 0},
+	 false,
+	 false,
+	 true,
+	 -1,
+	 false},
+	{"OGRE: rows", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2 * kNear - 1, 200 * kNear, 0, 0, -1, 0}, true, false, false, 1, true},
+	{"Filament: reversed, infinite", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0}, false, false, true, 1, true},
+	{"Filament, OpenGL", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0}, false, false, true, -1, false},
 };
 
 } // namespace
@@ -338,8 +377,7 @@ TEST_CASE("module: cameras of every convention give the rays and depths of one",
 		nook_block block{};
 		REQUIRE(nook_fill(block, passed, settings) == nullptr);
 		CHECK(block.across_x[0] == 2.0F);
-		const bool rows_from_top = engine.projection[5] * engine.first_row_ndc_y > 0.0;
-		CHECK(block.across_y[0] == (rows_from_top ? 1.0F : -1.0F)); // NDC y upward, negated for rows from the bottom
+		CHECK(block.across_y[0] == (engine.top_first ? 1.0F : -1.0F));
 		for (const double depth : {0.2, 1.0, 10.0, 90.0})
 		{
 			const double z = engine.left_handed ? depth : -depth; // in the engine's own view space and memory

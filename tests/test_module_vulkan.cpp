@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Modules for Vulkan and HLSL, compiled by glslang and dispatched by a Vulkan driver: pixels decide, not compilers.
-#include "other_tools.h"
 #include "picture_errors.h"
 #include "small_modules.h"
 #include "small_views.h"
-#include "temporary_folder.h"
 #include "vulkan_device.h"
 
 #include "core/file.h"
@@ -28,6 +26,7 @@ namespace
 
 // The bindings of a module (docs/reference/modules.md): the block, textures, the picture of the pass, and for textures apart from
 // their sampler the sampler, for HLSL the numbers of the pass.
+constexpr uint32_t kOwnTileBinding = 13; // of the test, for a macro that reads it
 constexpr uint32_t kOutBinding = 15;
 constexpr uint32_t kLastBinding = 16;
 constexpr std::array<uint32_t, 5> kSlotBindings{6, 11, 7, 8, 9}; // by ShadeSlot
@@ -35,9 +34,7 @@ constexpr std::array<uint32_t, 5> kSlotBindings{6, 11, 7, 8, 9}; // by ShadeSlot
 struct VulkanPass
 {
 	std::map<uint32_t, VkImageView> textures;
-	VkImageView picture{};
-	uint32_t width = 0;
-	uint32_t height = 0;
+	VulkanTarget target;
 	glm::ivec4 numbers{};
 };
 
@@ -46,23 +43,29 @@ class VulkanShader
 public:
 	VulkanShader(const VulkanDevice& vulkan, const ModuleSettings& settings, const std::string& spirv)
 		: m_vulkan(vulkan), m_hlsl(settings.target == GlslTarget::hlsl60),
-		  m_bindings(vulkan, typesFor(settings), VK_SHADER_STAGE_COMPUTE_BIT, sizeof VulkanPass::numbers)
+		  m_bindings(vulkan, typesFor(settings), VK_SHADER_STAGE_ALL, sizeof VulkanPass::numbers)
 	{
+		if (settings.main == ModuleMain::fragment)
+		{
+			m_fragment = spirv;
+			return;
+		}
 		auto info = vulkanInfo<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
 		info.stage = vulkanStageOf(vulkan, VK_SHADER_STAGE_COMPUTE_BIT, spirv);
 		info.layout = m_bindings.layout();
 		requireVulkan(vkCreateComputePipelines(vulkan.device(), VK_NULL_HANDLE, 1, &info, nullptr, &m_pipeline));
 	}
 
-	// Dispatches it `times` times, one after the other, which keeps the GPU's clock up. Returns the time of one in milliseconds.
-	double dispatch(const VulkanPass& pass, const VulkanBuffer& block, int times) const
+	// Draws a fragment shader, or dispatches a compute shader `times` times, one after the other, which keeps the GPU's clock up.
+	// Returns the time of one in milliseconds.
+	double run(const VulkanPass& pass, const VulkanBuffer& block, int times) const
 	{
 		m_bindings.bind(0, block);
 		for (const auto& [binding, view] : pass.textures)
 		{
 			m_bindings.bind(binding, view);
 		}
-		m_bindings.bind(kOutBinding, pass.picture);
+		m_bindings.bind(kOutBinding, pass.target.view);
 		if (m_hlsl)
 		{
 			m_bindings.bind(kLastBinding, VulkanBuffer(m_vulkan, sizeof pass.numbers, &pass.numbers));
@@ -71,14 +74,23 @@ public:
 		{
 			m_bindings.bind(kLastBinding, VkImageView{});
 		}
+		if (!m_fragment.empty())
+		{
+			const TemporaryFolder folder;
+			drawVulkan(m_vulkan, m_bindings, {spirvOfStage(kScreenTriangle, "vert", "", folder), m_fragment}, pass.target,
+					   VulkanBlend::none, block, VK_FRONT_FACE_CLOCKWISE,
+					   [](VkCommandBuffer commands) { vkCmdDraw(commands, 3, 1, 0, 0); });
+			return 0.0;
+		}
 		const double milliseconds = m_vulkan.run(
 			[&](VkCommandBuffer commands)
 			{
 				m_bindings.use(commands, VK_PIPELINE_BIND_POINT_COMPUTE, m_pipeline);
-				vkCmdPushConstants(commands, m_bindings.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, 16, &pass.numbers);
+				vkCmdPushConstants(commands, m_bindings.layout(), VK_SHADER_STAGE_ALL, 0, 16, &pass.numbers);
 				for (int i = 0; i < times; ++i)
 				{
-					vkCmdDispatch(commands, (pass.width + 7) / 8, (pass.height + 7) / 8, 1);
+					vkCmdDispatch(commands, static_cast<uint32_t>(pass.target.width + 7) / 8,
+								  static_cast<uint32_t>(pass.target.height + 7) / 8, 1);
 					auto barrier = vulkanInfo<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
 					barrier.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT;
 					barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
@@ -105,23 +117,22 @@ private:
 	const VulkanDevice& m_vulkan;
 	bool m_hlsl = false;
 	VulkanBindings m_bindings;
+	std::string m_fragment; // SPIR-V
 	VkPipeline m_pipeline{};
 };
 
-// SPIR-V of one pass of a whole compute shader.
+// SPIR-V of one pass of a whole shader.
 std::string spirvOf(const ModuleSettings& settings, const std::string& module, const std::string& number, PictureFormat format,
 					const TemporaryFolder& folder)
 {
 	constexpr std::array<const char*, 3> kImageFormats{"r32f", "rgba32f", "rgba32ui"};
-	const bool hlsl = settings.target == GlslTarget::hlsl60;
-	writeFile(folder / "m.comp", module);
 	// Without -Od, glslang joins multiplications and additions of HLSL. That moves areas by 1e-5, which take the root of a
 	// difference.
-	REQUIRE(passes(std::string("glslangValidator -V -S comp ") + (hlsl ? "-D -Od -e main -DNOOK_VULKAN" : "-DNOOK_OUT_FORMAT=") +
-					   (hlsl ? "" : kImageFormats[static_cast<std::size_t>(format)]) + " -DNOOK_PASS=" + number + " -o '" +
-					   folder / "m.spv" + "' '" + folder / "m.comp" + "'",
-				   folder));
-	return readFile(folder / "m.spv");
+	const std::string options = settings.target == GlslTarget::hlsl60
+									? "-D -Od -e main -DNOOK_VULKAN"
+									: std::string("-DNOOK_OUT_FORMAT=") + kImageFormats[static_cast<std::size_t>(format)];
+	return spirvOfStage(module, settings.main == ModuleMain::fragment ? "frag" : "comp", options + " -DNOOK_PASS=" + number,
+						folder);
 }
 
 struct ComputedPicture
@@ -132,13 +143,15 @@ struct ComputedPicture
 	std::map<std::string, std::vector<double>> calls_ms;
 };
 
-// The picture of a module, computed as its head says. For times: with repetitions.
-ComputedPicture computed(const GBuffer& gbuffer, const ModuleSettings& settings, int repetitions = 1)
+// The picture of a module, computed as its head says. For times: with repetitions. own_tile: what to define so that macros read the
+// tile from kOwnTileBinding instead of its own.
+ComputedPicture computed(const GBuffer& gbuffer, const ModuleSettings& settings, int repetitions = 1,
+						 const std::string& own_tile = "")
 {
 	static std::map<std::string, VulkanShader> shaders; // by the module and the number of the pass
 	const VulkanDevice& vulkan = anyDevice();
 	const TemporaryFolder folder;
-	const std::string module = moduleGlsl(settings, contextOf("nook emit"));
+	const std::string module = withDefinitions(moduleGlsl(settings, contextOf("nook emit")), own_tile);
 	const ShadeSamples samples = samplesFor(settings);
 	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings.shade, false);
 	const std::vector<float> numbers = bytesFor(passBlockFor(gbuffer, settings.shade, 1, 0), settings.float_block);
@@ -187,24 +200,25 @@ ComputedPicture computed(const GBuffer& gbuffer, const ModuleSettings& settings,
 			one.textures[2] = normal_picture.view;
 			for (const uint32_t binding : {3U, 4U, 5U, 10U, 12U}) // the tile of any method
 			{
-				one.textures[binding] = tile.view;
+				one.textures[binding] = own_tile.empty() ? tile.view : depths.view;
 			}
+			one.textures[kOwnTileBinding] = tile.view;
 			std::vector<ShadeRead> reads = pass.reads;
 			reads.insert(reads.end(), upsampled.begin(), upsampled.end());
 			for (const ShadeRead& read : reads)
 			{
 				one.textures[kSlotBindings[static_cast<std::size_t>(read.slot)]] = pictures[read.picture]->view;
 			}
-			one.picture = picture.viewOf(vulkan, static_cast<uint32_t>(pass.level), 1, static_cast<uint32_t>(pass.layer), 1);
-			one.width = static_cast<uint32_t>(std::max(picture.shape.width >> pass.level, 1));
-			one.height = static_cast<uint32_t>(std::max(picture.shape.height >> pass.level, 1));
+			one.target = {picture.viewOf(vulkan, static_cast<uint32_t>(pass.level), 1, static_cast<uint32_t>(pass.layer), 1),
+						  picture.format, std::max(picture.shape.width >> pass.level, 1),
+						  std::max(picture.shape.height >> pass.level, 1)};
 			one.numbers = modulePassOf(pass.block, pass.kernel.call);
 			if (settings.float_block)
 			{
 				const glm::vec4 floats(one.numbers);
 				std::memcpy(&one.numbers, &floats, sizeof floats);
 			}
-			const double milliseconds = shaders.at(key).dispatch(one, block, repetitions == 1 ? 1 : 64);
+			const double milliseconds = shaders.at(key).run(one, block, repetitions == 1 ? 1 : 64);
 			result.all_ms[repetition] += milliseconds;
 			result.calls_ms[call].resize(result.all_ms.size());
 			result.calls_ms[call][repetition] += milliseconds;
@@ -257,6 +271,54 @@ TEST_CASE("module: HLSL and Vulkan's GLSL compute one picture, that of nook shad
 		const float found = largestDifference(glsl, computed(gbuffer, settings).visibility);
 		CAPTURE(1e6F * found);
 		CHECK(found <= most);
+		if (vulkan.draws() && (one.shade.method == ShadeMethod::vo_line || one.shade.method == ShadeMethod::vo_point))
+		{
+			settings.main = ModuleMain::fragment;
+			CHECK(largestDifference(glsl, computed(gbuffer, settings).visibility) <= most);
+		}
+	}
+}
+
+TEST_CASE("module: macros read the tile from another texture", "[emit]")
+{
+	if (anyDevice().device() == nullptr || !toolExists("glslangValidator"))
+	{
+		WARN("skipped: found no Vulkan device or no glslangValidator, expected Debian's mesa-vulkan-drivers and glslang-tools");
+		return;
+	}
+	const GBuffer gbuffer = builtinView("courtyard", 48, 27);
+	ModuleSettings settings = moduleOf({"vo-line", {}}, GlslTarget::vulkan);
+	settings.main = ModuleMain::compute;
+	settings.textures = ModuleTextures::macros;
+	const std::vector<float> expected = computed(gbuffer, settings).visibility;
+	const std::string glsl = "layout(set = 0, binding = 13) uniform sampler2D own;\n"
+							 "#define NOOK_VO_LINE_TILE(row, i) texelFetch(own, ivec2(row, i), 0)\n";
+	CHECK(computed(gbuffer, settings, 1, glsl).visibility == expected);
+	settings.target = GlslTarget::hlsl60;
+	settings.textures = ModuleTextures::fixed; // HLSL always has the macros
+	const std::string hlsl = "[[vk::binding(13, 0)]] Texture2D<float4> own;\n"
+							 "#define NOOK_VO_LINE_TILE(row, i) own.Load(int3(row, i, 0))\n";
+	CHECK(largestDifference(computed(gbuffer, settings, 1, hlsl).visibility, expected) <= 1e-6F);
+	CHECK(largestDifference(computed(gbuffer, settings, 1, "// none").visibility, expected) >
+		  0.1F); // the tile's own binding has depths
+}
+
+TEST_CASE("module: spirv-cross translates HLSL's SPIR-V to MSL", "[emit]")
+{
+	if (!toolExists("glslangValidator") || !toolExists("spirv-cross"))
+	{
+		WARN("skipped: found no glslangValidator or no spirv-cross, expected Debian's glslang-tools and spirv-cross");
+		return;
+	}
+	const TemporaryFolder folder;
+	for (const PassCase& one : passCases())
+	{
+		CAPTURE(one.name);
+		ModuleSettings settings = moduleOf(one, GlslTarget::hlsl60);
+		settings.main = ModuleMain::fragment;
+		spirvOf(settings, moduleGlsl(settings, contextOf("nook emit")), "0", PictureFormat::scalar, folder);
+		REQUIRE(passes("spirv-cross --msl '" + folder / "m.spv" + "' --output '" + folder / "m.metal" + "'", folder));
+		CHECK(readFile(folder / "m.metal").find("fragment main0_out main0(") != std::string::npos);
 	}
 }
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volumes and masks in Vulkan's GLSL and in HLSL, compiled by glslang and drawn by a Vulkan driver.
-#include "other_tools.h"
 #include "small_gbuffers.h"
 #include "small_volumes.h"
-#include "temporary_folder.h"
 #include "vulkan_device.h"
 
 #include "core/lists.h"
@@ -17,23 +15,6 @@ using namespace nook::test;
 
 namespace
 {
-
-constexpr const char* kScreenTriangle = R"(#version 450
-void main()
-{
-	gl_Position = vec4(gl_VertexIndex == 1 ? 3.0 : -1.0, gl_VertexIndex == 2 ? 3.0 : -1.0, 0.0, 1.0);
-}
-)";
-
-// SPIR-V of a stage of the volumes, or of other GLSL.
-std::string spirvOfStage(const std::string& text, const char* kind, const std::string& options, const TemporaryFolder& folder)
-{
-	writeFile(folder / "m.txt", text);
-	REQUIRE(passes("glslangValidator -V -S " + std::string(kind) + " " + options + " -o '" + folder / "m.spv" + "' '" +
-					   folder / "m.txt" + "'",
-				   folder));
-	return readFile(folder / "m.spv");
-}
 
 // One layout for all stages: docs/reference/modules.md, bindings.
 class VolumeLayout
@@ -49,91 +30,14 @@ public:
 		m_bindings.bind(binding, bound);
 	}
 
-	// Draws into a picture that is cleared to 0. draw(commands) makes the draw calls. The vertices' buffer holds the numbers of the
-	// clusters. Blending adds floats and joins integers by OR.
+	// Draws into a picture: floats add up, integers are joined by OR.
 	template <class Draw>
 	void draw(const std::string& vertex, const std::string& fragment, const VulkanPicture& target, const VulkanBuffer& numbers,
 			  VkFrontFace front, const Draw& draw) const
 	{
-		const std::array stages{vulkanStageOf(m_vulkan, VK_SHADER_STAGE_VERTEX_BIT, vertex),
-								vulkanStageOf(m_vulkan, VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
-		const VkVertexInputBindingDescription instances{0, 4, VK_VERTEX_INPUT_RATE_INSTANCE};
-		const VkVertexInputAttributeDescription cluster{0, 0, VK_FORMAT_R32_SINT, 0};
-		auto input = vulkanInfo<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
-		input.vertexBindingDescriptionCount = 1;
-		input.pVertexBindingDescriptions = &instances;
-		input.vertexAttributeDescriptionCount = 1;
-		input.pVertexAttributeDescriptions = &cluster;
-		auto assembly =
-			vulkanInfo<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
-		assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-		const VkExtent2D size{static_cast<uint32_t>(target.shape.width), static_cast<uint32_t>(target.shape.height)};
-		const VkViewport view{0.0F, 0.0F, static_cast<float>(size.width), static_cast<float>(size.height), 0.0F, 1.0F};
-		const VkRect2D whole{{0, 0}, size};
-		auto viewport = vulkanInfo<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
-		viewport.viewportCount = 1;
-		viewport.pViewports = &view;
-		viewport.scissorCount = 1;
-		viewport.pScissors = &whole;
-		auto raster =
-			vulkanInfo<VkPipelineRasterizationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
-		raster.frontFace = front;
-		raster.lineWidth = 1.0F;
-		auto samples = vulkanInfo<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
-		samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
 		const bool bits = target.shape.format == PictureFormat::counts;
-		VkPipelineColorBlendAttachmentState add{};
-		add.blendEnable = bits ? VK_FALSE : VK_TRUE;
-		add.srcColorBlendFactor = add.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
-		add.colorWriteMask = 15;
-		auto blend = vulkanInfo<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
-		blend.logicOpEnable = bits ? VK_TRUE : VK_FALSE;
-		blend.logicOp = VK_LOGIC_OP_OR;
-		blend.attachmentCount = 1;
-		blend.pAttachments = &add;
-		const VkDynamicState cull = VK_DYNAMIC_STATE_CULL_MODE;
-		auto dynamic = vulkanInfo<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
-		dynamic.dynamicStateCount = 1;
-		dynamic.pDynamicStates = &cull;
-		auto formats = vulkanInfo<VkPipelineRenderingCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO);
-		formats.colorAttachmentCount = 1;
-		formats.pColorAttachmentFormats = &target.format;
-		auto info = vulkanInfo<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
-		info.pNext = &formats;
-		info.stageCount = 2;
-		info.pStages = stages.data();
-		info.pVertexInputState = &input;
-		info.pInputAssemblyState = &assembly;
-		info.pViewportState = &viewport;
-		info.pRasterizationState = &raster;
-		info.pMultisampleState = &samples;
-		info.pColorBlendState = &blend;
-		info.pDynamicState = &dynamic;
-		info.layout = m_bindings.layout();
-		VkPipeline pipeline{};
-		requireVulkan(vkCreateGraphicsPipelines(m_vulkan.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
-
-		auto attachment = vulkanInfo<VkRenderingAttachmentInfo>(VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO);
-		attachment.imageView = target.view;
-		attachment.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
-		attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-		attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-		auto rendering = vulkanInfo<VkRenderingInfo>(VK_STRUCTURE_TYPE_RENDERING_INFO);
-		rendering.renderArea = whole;
-		rendering.layerCount = 1;
-		rendering.colorAttachmentCount = 1;
-		rendering.pColorAttachments = &attachment;
-		m_vulkan.run(
-			[&](VkCommandBuffer commands)
-			{
-				const VkDeviceSize start = 0;
-				vkCmdBeginRendering(commands, &rendering);
-				m_bindings.use(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
-				vkCmdBindVertexBuffers(commands, 0, 1, &numbers.buffer, &start);
-				vkCmdSetCullMode(commands, VK_CULL_MODE_NONE);
-				draw(commands);
-				vkCmdEndRendering(commands);
-			});
+		drawVulkan(m_vulkan, m_bindings, {vertex, fragment}, {target.view, target.format, target.shape.width, target.shape.height},
+				   bits ? VulkanBlend::join : VulkanBlend::add, numbers, front, draw);
 	}
 
 private:
@@ -273,8 +177,10 @@ TEST_CASE("module: HLSL and Vulkan's GLSL draw the volumes and masks of nook sha
 			}
 			CHECK(beyond <= glsl.size() / (directions > 0 ? 100 : 1000)); // a direction that just misses an edge is one bit
 			CHECK(*std::min_element(glsl.begin(), glsl.end()) < 0.7F);
+			// Masks are equal bit by bit on llvmpipe; on a GPU an edge may be one direction off.
+			const float mask_bound = anyDevice().name().find("llvmpipe") != std::string::npos ? 0.0F : 1.0F / 64.0F;
 			CHECK(largestDifference(glsl, drawnVolumes(gbuffer, set, GlslTarget::hlsl60, directions)) <=
-				  (directions > 0 ? 1.0F / 64.0F : 1e-6F));
+				  (directions > 0 ? mask_bound : 1e-6F));
 		}
 	}
 }

@@ -2,6 +2,10 @@
 // A Vulkan device with buffers and pictures, for tests. Nothing is freed before the process ends.
 #pragma once
 
+#include "other_tools.h"
+#include "temporary_folder.h"
+
+#include "core/file.h"
 #include "methods/passes.h"
 
 #include <catch2/catch.hpp>
@@ -366,6 +370,138 @@ inline const VulkanDevice& anyDevice()
 {
 	static const VulkanDevice vulkan;
 	return vulkan;
+}
+
+inline constexpr const char* kScreenTriangle = R"(#version 450
+void main()
+{
+	gl_Position = vec4(gl_VertexIndex == 1 ? 3.0 : -1.0, gl_VertexIndex == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}
+)";
+
+// SPIR-V of one stage. options: of glslangValidator.
+inline std::string spirvOfStage(const std::string& text, const char* kind, const std::string& options,
+								const TemporaryFolder& folder)
+{
+	writeFile(folder / "m.txt", text);
+	REQUIRE(passes("glslangValidator -V -S " + std::string(kind) + " " + options + " -o '" + folder / "m.spv" + "' '" +
+					   folder / "m.txt" + "'",
+				   folder));
+	return readFile(folder / "m.spv");
+}
+
+inline VkPipelineShaderStageCreateInfo vulkanStageOf(const VulkanDevice& vulkan, VkShaderStageFlagBits kind,
+													 const std::string& spirv)
+{
+	std::vector<uint32_t> words(spirv.size() / 4);
+	std::memcpy(words.data(), spirv.data(), spirv.size());
+	auto module_info = vulkanInfo<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+	module_info.codeSize = spirv.size();
+	module_info.pCode = words.data();
+	auto stage = vulkanInfo<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
+	stage.stage = kind;
+	stage.pName = "main";
+	requireVulkan(vkCreateShaderModule(vulkan.device(), &module_info, nullptr, &stage.module));
+	return stage;
+}
+
+struct VulkanTarget
+{
+	VkImageView view{};
+	VkFormat format{};
+	int width = 0;
+	int height = 0;
+};
+
+enum class VulkanBlend
+{
+	none,
+	add,
+	join // integers, by OR
+};
+
+// Draws into a target that is cleared to 0, with the SPIR-V of a vertex and a fragment shader. draw(commands) makes the draw calls.
+// An instance of a draw call reads one integer of `numbers`.
+template <class Draw>
+void drawVulkan(const VulkanDevice& vulkan, const VulkanBindings& bindings, const std::array<std::string, 2>& spirv,
+				const VulkanTarget& target, VulkanBlend mode, const VulkanBuffer& numbers, VkFrontFace front, const Draw& draw)
+{
+	const std::array stages{vulkanStageOf(vulkan, VK_SHADER_STAGE_VERTEX_BIT, spirv[0]),
+							vulkanStageOf(vulkan, VK_SHADER_STAGE_FRAGMENT_BIT, spirv[1])};
+	const VkVertexInputBindingDescription instances{0, 4, VK_VERTEX_INPUT_RATE_INSTANCE};
+	const VkVertexInputAttributeDescription cluster{0, 0, VK_FORMAT_R32_SINT, 0};
+	auto input = vulkanInfo<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
+	input.vertexBindingDescriptionCount = 1;
+	input.pVertexBindingDescriptions = &instances;
+	input.vertexAttributeDescriptionCount = 1;
+	input.pVertexAttributeDescriptions = &cluster;
+	auto assembly = vulkanInfo<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
+	assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+	const VkExtent2D size{static_cast<uint32_t>(target.width), static_cast<uint32_t>(target.height)};
+	const VkViewport view{0.0F, 0.0F, static_cast<float>(size.width), static_cast<float>(size.height), 0.0F, 1.0F};
+	const VkRect2D whole{{0, 0}, size};
+	auto viewport = vulkanInfo<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
+	viewport.viewportCount = 1;
+	viewport.pViewports = &view;
+	viewport.scissorCount = 1;
+	viewport.pScissors = &whole;
+	auto raster = vulkanInfo<VkPipelineRasterizationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
+	raster.frontFace = front;
+	raster.lineWidth = 1.0F;
+	auto samples = vulkanInfo<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
+	samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+	VkPipelineColorBlendAttachmentState add{};
+	add.blendEnable = mode == VulkanBlend::add ? VK_TRUE : VK_FALSE;
+	add.srcColorBlendFactor = add.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
+	add.colorWriteMask = 15;
+	auto blend = vulkanInfo<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
+	blend.logicOpEnable = mode == VulkanBlend::join ? VK_TRUE : VK_FALSE;
+	blend.logicOp = VK_LOGIC_OP_OR;
+	blend.attachmentCount = 1;
+	blend.pAttachments = &add;
+	const VkDynamicState cull = VK_DYNAMIC_STATE_CULL_MODE;
+	auto dynamic = vulkanInfo<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
+	dynamic.dynamicStateCount = 1;
+	dynamic.pDynamicStates = &cull;
+	auto formats = vulkanInfo<VkPipelineRenderingCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO);
+	formats.colorAttachmentCount = 1;
+	formats.pColorAttachmentFormats = &target.format;
+	auto info = vulkanInfo<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
+	info.pNext = &formats;
+	info.stageCount = 2;
+	info.pStages = stages.data();
+	info.pVertexInputState = &input;
+	info.pInputAssemblyState = &assembly;
+	info.pViewportState = &viewport;
+	info.pRasterizationState = &raster;
+	info.pMultisampleState = &samples;
+	info.pColorBlendState = &blend;
+	info.pDynamicState = &dynamic;
+	info.layout = bindings.layout();
+	VkPipeline pipeline{};
+	requireVulkan(vkCreateGraphicsPipelines(vulkan.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
+
+	auto attachment = vulkanInfo<VkRenderingAttachmentInfo>(VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO);
+	attachment.imageView = target.view;
+	attachment.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
+	attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+	attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+	auto rendering = vulkanInfo<VkRenderingInfo>(VK_STRUCTURE_TYPE_RENDERING_INFO);
+	rendering.renderArea = whole;
+	rendering.layerCount = 1;
+	rendering.colorAttachmentCount = 1;
+	rendering.pColorAttachments = &attachment;
+	vulkan.run(
+		[&](VkCommandBuffer commands)
+		{
+			const VkDeviceSize start = 0;
+			vkCmdBeginRendering(commands, &rendering);
+			bindings.use(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+			vkCmdBindVertexBuffers(commands, 0, 1, &numbers.buffer, &start);
+			vkCmdSetCullMode(commands, VK_CULL_MODE_NONE);
+			draw(commands);
+			vkCmdEndRendering(commands);
+		});
 }
 
 inline float largestDifference(const std::vector<float>& a, const std::vector<float>& b)

@@ -4,7 +4,7 @@
 #include <Ogre.h>
 
 #include <nlohmann/json.hpp>
-#include <ogre_ao.h> // emitted: nook_fill and the tile
+#include <ogre_ao.h> // nook: nook_fill and the tile
 
 #include <fstream>
 #include <iomanip>
@@ -90,7 +90,7 @@ int main()
 	Ogre::RenderWindow& window = *root.createRenderWindow("nook in OGRE", kWidth, kHeight, false);
 	Ogre::ResourceGroupManager::getSingleton().addResourceLocation(MEDIA, "FileSystem", "engine");
 	Ogre::ResourceGroupManager::getSingleton().addResourceLocation(MADE, "FileSystem", "engine");
-	loadTile();
+	loadTile(); // nook
 	Ogre::ResourceGroupManager::getSingleton().initialiseAllResourceGroups();
 	Ogre::SceneManager& scene = *root.createSceneManager();
 	loadLevel(scene);
@@ -102,9 +102,9 @@ int main()
 	camera.setFOVy(Ogre::Degree(62.0f));
 	camera.setAspectRatio(static_cast<Ogre::Real>(kWidth) / kHeight);
 	camera.setNearClipDistance(0.1f);
-	float projection[16];
-	std::copy_n(camera.getProjectionMatrix().transpose()[0], 16, projection); // OGRE stores matrices row by row
-	fillBlock(projection, 1.5);
+	float projection[16]; // nook
+	std::copy_n(camera.getProjectionMatrix().transpose()[0], 16, projection); // nook: OGRE stores matrices row by row
+	fillBlock(projection, 1.5); // nook
 	auto& compositor = *Ogre::CompositorManager::getSingleton().addCompositor(window.addViewport(&camera), "nook");
 	compositor.setEnabled(true);
 	root.renderOneFrame();

@@ -168,7 +168,7 @@ function readyOf(name, scene) {
 	return ready.get(key);
 }
 
-function drawn(name, scene) {
+export function drawn(name, scene) {
 	const composer = readyOf(name, scene);
 	composer.render(0);
 	return readBack(composer);
@@ -199,7 +199,7 @@ function agreeing(scene) {
 	return { counted, share: count / surfaces };
 }
 
-function rmse({ rays, counted }, values, curve = v => v, step = 1) {
+export function rmse({ rays, counted }, values, curve = v => v, step = 1) {
 	let sum = 0, count = 0;
 	for (let i = 0; i < rays.length; i += step) {
 		if (!counted[i]) continue;

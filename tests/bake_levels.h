@@ -5,9 +5,26 @@
 #include "small_levels.h"
 
 #include "bake/bake.h"
+#include "scene/gltf_edit.h"
+#include "scene/load_parts.h"
 
 namespace nook::test
 {
+
+// A level as a file with baked values.
+inline std::string bakedGlb(const Level& level, std::string_view generator, const GlbBake& bake)
+{
+	if (bake.visibility.empty() && bake.png.empty())
+	{
+		return levelGlb(level, generator);
+	}
+	GltfBake in;
+	static_cast<GlbBake&>(in) = bake;
+	std::vector<GltfPlace> places;
+	std::string bytes = levelGlb(level, generator, places);
+	const std::array<std::string, 1> output{"level.glb"};
+	return bakeInto(openGlb(std::move(bytes), level.name), places, in, output).files.front();
+}
 
 inline BakeSettings within(double radius_m)
 {

@@ -381,7 +381,7 @@ TEST_CASE("bake: values come back from the file, as an attribute and as a colour
 	Level level = emptyLevel();
 	addQuad(level, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, -1.0});
 	const std::vector<float> values{0.0F, 0.25F, 0.5F, 1.0F};
-	const std::string bytes = levelGlb(level, "nook test", {values, true, {}, {}, {}, {}, {}});
+	const std::string bytes = bakedGlb(level, "nook test", {values, true, {}, {}, {}, {}, {}});
 	uint32_t text = 0;
 	std::memcpy(&text, bytes.data() + 12, sizeof text);
 	const nlohmann::json root = parseJson(bytes.substr(20, text), "a.glb");
@@ -431,7 +431,7 @@ TEST_CASE("bake: a sheet with two sides has a value for each", "[bake][emit]")
 	CHECK(std::fabs(mean.visibility[middle] - 0.52F) < 0.05F);
 	CHECK(separate < 0.5 * checkBake(tracer, level, mean, settings, 1000, {}).rmse);
 
-	const std::string bytes = levelGlb(level, "nook test", {bake.visibility, true, {}, {}, bake.back, bake.bent, bake.bent_back});
+	const std::string bytes = bakedGlb(level, "nook test", {bake.visibility, true, {}, {}, bake.back, bake.bent, bake.bent_back});
 	uint32_t text = 0;
 	std::memcpy(&text, bytes.data() + 12, sizeof text);
 	const nlohmann::json root = parseJson(bytes.substr(20, text), "a.glb");
@@ -454,7 +454,7 @@ TEST_CASE("bake: values are read again and drawn where the view shows what was b
 		values.push_back(static_cast<float>(0.5 + 0.2 * position.x));
 	}
 	const std::string path = folder / "a.glb";
-	writeFile(path, levelGlb(level, "nook test", {values, false, {}, {}, {}, {}, {}}));
+	writeFile(path, bakedGlb(level, "nook test", {values, false, {}, {}, {}, {}, {}}));
 	const LoadedLevel loaded = loadLevel(path, {}, {});
 	const BakedValues baked = loadBakedValues(path, loaded.level, {});
 	CHECK(baked.kind == BakedKind::visibility);

@@ -250,7 +250,7 @@ TEST_CASE("bake: a second set of coordinates is read where it is asked for, and 
 	}
 	const std::string png = alphaPngBytes(1, 1, std::vector<uint8_t>{255});
 	const TemporaryFolder folder;
-	writeFile(folder / "a.glb", levelGlb(level, "nook test", {{}, false, second, png}));
+	writeFile(folder / "a.glb", bakedGlb(level, "nook test", {{}, false, second, png}));
 	const Level again = loadLevel(folder / "a.glb", {}, {}).level;
 	const std::vector<glm::vec2> found = loadSecondUvs(folder / "a.glb", {}, again, {});
 	REQUIRE(found.size() == again.positions.size());
@@ -260,7 +260,7 @@ TEST_CASE("bake: a second set of coordinates is read where it is asked for, and 
 	}
 	// Without a mask there is only one set.
 	level.material_list[0] = {};
-	writeFile(folder / "a.glb", levelGlb(level, "nook test", {{}, false, second, png}));
+	writeFile(folder / "a.glb", bakedGlb(level, "nook test", {{}, false, second, png}));
 	const Level plain = loadLevel(folder / "a.glb", {}, {}).level;
 	CHECK(loadSecondUvs(folder / "a.glb", {}, plain, {}).empty());
 	CHECK(plain.uvs[5] == second[5]);
@@ -378,7 +378,7 @@ TEST_CASE("bake: a second set of coordinates is read of sheets whose triangles w
 	}
 	const TemporaryFolder folder;
 	writeFile(folder / "a.glb",
-			  levelGlb(level, "nook test", {{}, false, second, alphaPngBytes(1, 1, std::vector<uint8_t>{255}), {}, {}, {}}));
+			  bakedGlb(level, "nook test", {{}, false, second, alphaPngBytes(1, 1, std::vector<uint8_t>{255}), {}, {}, {}}));
 	Level again = loadLevel(folder / "a.glb", {}, {}).level;
 	REQUIRE(alignSheets(again, 1) == 1);
 	const std::vector<glm::vec2> found = loadSecondUvs(folder / "a.glb", {}, again, {});

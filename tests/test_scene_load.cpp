@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Level files of every format, generated here, and what must be read from them.
+#include "bake_levels.h"
 #include "level_files.h"
 #include "small_levels.h"
 #include "temporary_folder.h"
@@ -519,7 +520,7 @@ namespace
 Level again(const Level& level, const GlbBake& bake = {})
 {
 	const TemporaryFolder folder;
-	writeFile(folder / "level.glb", levelGlb(level, "nook test", bake));
+	writeFile(folder / "level.glb", bakedGlb(level, "nook test", bake));
 	return loadLevel(folder / "level.glb", {}, {}).level;
 }
 

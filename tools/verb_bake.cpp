@@ -91,10 +91,11 @@ void takeTarget(BakeOptions& options, const std::string& name, const std::string
 	const auto target = static_cast<BakeTarget>(word - kBakeTargets.begin());
 	const bool set = target == BakeTarget::texcoord && rest.size() == 1 && rest[0] >= '0' && rest[0] <= '0' + kMostSet;
 	const bool custom = target == BakeTarget::custom && !rest.empty() && isPlainName(rest);
-	const bool plain = target != BakeTarget::texcoord && target != BakeTarget::custom && colon == std::string::npos;
+	const bool plain =
+		target != BakeTarget::texcoord && target != BakeTarget::custom && (colon == std::string::npos || text == "texture:orm");
 	if (word == kBakeTargets.end() || !(set || custom || plain))
 	{
-		refuseValue(name, text, "visibility, color, color-alpha, texcoord:0 to texcoord:7, custom:NAME or texture");
+		refuseValue(name, text, "visibility, color, color-alpha, texcoord:0 to texcoord:7, custom:NAME, texture or texture:orm");
 	}
 	options.to = text;
 	options.target = target;
@@ -147,7 +148,8 @@ void declare(CLI::App& app, BakeOptions& options)
 		  "With --max-error: no more vertices than that (default 2000000)", ofVertices({}, {{"--max-error", "both or none"}})},
 		 {"--to",
 		  takesParsed("TARGET", take_target),
-		  "Where the file has it: visibility, an attribute (default), color, color-alpha, texcoord:N, custom:NAME, texture",
+		  "Where the file has it: visibility, an attribute (default), color, color-alpha, texcoord:N, custom:NAME, texture, "
+		  "texture:orm",
 		  {.excludes = {{"--probes"}, {"--volumes", "one of them, since a difference has its own attribute"}}}},
 		 {"--instances", takesChoice(kBakeInstances, options.instances),
 		  "A mesh at several nodes: values for each (default), shared: their mean, attribute: their mean and factors",
@@ -243,7 +245,7 @@ void settle(BakeOptions& options)
 	}
 	if (options.texture_px > 0)
 	{
-		options.to = kBakeTargets.back();
+		options.to = options.target == BakeTarget::texture ? options.to : std::string(kBakeTargets.back());
 		options.target = BakeTarget::texture;
 	}
 	const std::string ending = endingOf(options.level.level);
@@ -409,6 +411,7 @@ GltfBake bakeOf(const BakeOptions& options)
 	bake.attribute = options.attribute;
 	bake.instances = options.instances;
 	bake.color = options.color;
+	bake.in_red = options.to.ends_with(":orm");
 	bake.others_stay = !options.level.load.ignore.empty() || !options.receivers.empty();
 	bake.kind = options.volumes.empty() ? BakedKind::visibility
 				: options.mask          ? BakedKind::mask_volume_difference
@@ -468,6 +471,15 @@ GltfBaked write(const BakeOptions& options, const BakeInput& input, const Level&
 		std::erase_if(places[i].vertices, [](const auto& vertex) { return vertex.second == UINT32_MAX; });
 	}
 	GltfBaked baked = bakeInto(file, places, bake, outputs);
+	if (!level.sources.empty())
+	{
+		places.assign(1, {});
+		places.front().count = level.source_count;
+		for (std::size_t v = 0; v < level.sources.size(); ++v)
+		{
+			places.front().vertices.emplace_back(level.sources[v], static_cast<uint32_t>(v));
+		}
+	}
 	for (std::size_t i = 0, next = 0; i < options.outputs.files.size(); ++i)
 	{
 		const std::string& path = options.outputs.files[i];
@@ -899,6 +911,14 @@ void run(BakeOptions& options, VerbProgress& progress)
 	for (const std::string& warning : made.warnings)
 	{
 		warn(warning);
+	}
+	for (const Material& material : in_place ? std::vector<Material>() : input.level().material_list)
+	{
+		const std::string kind = material.picture.starts_with("data:") ? ".png" : endingOf(material.picture);
+		if (!material.picture.empty() && material.mask < 0 && kind != ".png" && kind != ".jpg" && kind != ".jpeg")
+		{
+			warn(material.picture + ": found a picture that few glTF viewers read, expected PNG or JPEG");
+		}
 	}
 }
 

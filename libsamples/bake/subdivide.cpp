@@ -254,6 +254,11 @@ private:
 	{
 		m_level.positions.push_back(0.5 * (m_level.positions[a] + m_level.positions[b]));
 		m_level.uvs.push_back(0.5F * (m_level.uvs[a] + m_level.uvs[b]));
+		m_level.sources.clear();
+		if (!m_level.colours.empty())
+		{
+			m_level.colours.push_back(0.5F * (m_level.colours[a] + m_level.colours[b]));
+		}
 		const glm::vec3 normal = m_level.normals[a] + m_level.normals[b];
 		const float length = glm::length(normal);
 		m_level.normals.push_back(length > 1e-6F ? normal / length : m_level.normals[a]);

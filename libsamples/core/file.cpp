@@ -564,6 +564,20 @@ std::string unescaped(const std::string& uri)
 	return text;
 }
 
+std::string escapedUri(const std::string& name)
+{
+	constexpr std::string_view kDigits = "0123456789ABCDEF";
+	constexpr std::string_view kEscaped = " \"#%<>?[\\]^`{|}:";
+	std::string uri;
+	for (const char c : name)
+	{
+		const auto byte = static_cast<unsigned char>(c);
+		const bool plain = byte > 32 && byte < 127 && kEscaped.find(c) == std::string_view::npos;
+		uri += plain ? std::string(1, c) : std::string{'%', kDigits[byte >> 4U], kDigits[byte & 15U]};
+	}
+	return uri;
+}
+
 std::string depfileText(std::span<const std::string> targets, std::span<const std::string> sources)
 {
 	std::string text = joinedText(targets, " ", [](const std::string& target) { return escaped(target, Side::target); }) + ":";

@@ -133,6 +133,7 @@ private:
 
 // Names in glTF: "a%20b.png" → "a b.png"; a % without a valid code stays.
 std::string unescaped(const std::string& uri);
+std::string escapedUri(const std::string& name);
 
 // A rule for GNU Make and Ninja: "target…: source…" with each path escaped. Throws Error (unsupported) for a path that Make 4.3 or
 // Ninja 1.11 cannot hold: in a makefile it could run a command, and in Ninja's log it could name another file.

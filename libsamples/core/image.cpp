@@ -387,6 +387,12 @@ std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> rgb, 
 	return fileOf({width_px, height_px, 3, 8, rgb.data()}, "sRGB", notes);
 }
 
+std::string rgbaPngBytes(int width_px, int height_px, std::span<const uint8_t> rgba)
+{
+	assert(rgba.size() == valuesOfPng(width_px, height_px, 4));
+	return fileOf({width_px, height_px, 4, 8, rgba.data()}, "sRGB", {});
+}
+
 std::string alphaPngBytes(int width_px, int height_px, std::span<const uint8_t> alpha)
 {
 	assert(alpha.size() == valuesOf(width_px, height_px, 1));
@@ -395,7 +401,7 @@ std::string alphaPngBytes(int width_px, int height_px, std::span<const uint8_t> 
 	{
 		rgba[4 * i + 3] = alpha[i];
 	}
-	return fileOf({width_px, height_px, 4, 8, rgba.data()}, "sRGB", {});
+	return rgbaPngBytes(width_px, height_px, rgba);
 }
 
 std::string pngBytes(int width_px, int height_px, std::span<const uint16_t> rgba, const Notes& notes)

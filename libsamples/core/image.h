@@ -97,7 +97,10 @@ std::string exrBytes(const Image& image);
 // 8-bit sRGB; 3 bytes per pixel, rows from the top.
 std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> rgb, const Notes& notes);
 
-// 8-bit; white with the given alpha: one byte per pixel, rows from the top.
+// 8-bit sRGB and opacity, 4 bytes per pixel, rows from the top.
+std::string rgbaPngBytes(int width_px, int height_px, std::span<const uint8_t> rgba);
+
+// White with the given alpha: one byte per pixel.
 std::string alphaPngBytes(int width_px, int height_px, std::span<const uint8_t> alpha);
 
 // 16-bit data, not colour: 4 values per pixel; the fourth is not opacity and nothing is premultiplied.

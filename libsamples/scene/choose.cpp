@@ -5,6 +5,9 @@
 #include "core/words.h"
 #include "scene/load_parts.h"
 
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+
 #include <algorithm>
 #include <array>
 
@@ -89,14 +92,14 @@ uint64_t reachedBy(const std::vector<std::string_view>& steps, uint64_t reached,
 	return next;
 }
 
-bool hasExtra(const PartNode& node, std::string_view glob)
+bool hasExtra(const std::vector<std::string>& extras, std::string_view glob)
 {
 	const bool with_value = glob.find('=') != std::string_view::npos;
 	const auto fits = [&](std::string_view extra)
 	{
 		return isGlobOf(glob, with_value ? extra : extra.substr(0, extra.find('=')));
 	};
-	return std::any_of(node.extras.begin(), node.extras.end(), fits);
+	return std::any_of(extras.begin(), extras.end(), fits);
 }
 
 std::vector<std::string_view> namesDownTo(const Level& level, const Mesh& mesh)
@@ -126,10 +129,14 @@ std::vector<std::string_view> namesDownTo(const Level& level, const Mesh& mesh)
 	{
 		add("material:" + level.material_list[i].name);
 	}
-	for (std::size_t i = 0; by_extras && i < level.nodes.size(); ++i)
+	const auto addExtras = [&](const auto& item)
 	{
-		std::for_each(level.nodes[i].extras.begin(), level.nodes[i].extras.end(),
-					  [&](const auto& extra) { add("extras:" + extra); });
+		std::for_each(item.extras.begin(), item.extras.end(), [&](const auto& extra) { add("extras:" + extra); });
+	};
+	if (by_extras)
+	{
+		std::for_each(level.nodes.begin(), level.nodes.end(), addExtras);
+		std::for_each(level.material_list.begin(), level.material_list.end(), addExtras);
 	}
 	for (std::size_t i = 0; !by_material && !by_extras && i < level.meshes.size(); ++i)
 	{
@@ -163,6 +170,33 @@ bool hasWord(std::string_view name, std::span<const std::string_view> words)
 	return false;
 }
 
+// A mesh around all others, as a sky is: there is half the diagonal of the others between their box and its own on each side. The
+// number of meshes if there is none.
+std::size_t shellOf(const Level& level)
+{
+	std::size_t largest = level.meshes.size();
+	Bounds shell;
+	for (std::size_t i = 0; i < level.meshes.size(); ++i)
+	{
+		const Bounds box = boundsOf(level, level.meshes[i]);
+		if (i == 0 || glm::distance(box.least, box.most) > glm::distance(shell.least, shell.most))
+		{
+			largest = i;
+			shell = box;
+		}
+	}
+	Bounds others;
+	for (std::size_t i = 0; i < level.meshes.size(); ++i)
+	{
+		const Bounds box = i == largest ? Bounds{} : boundsOf(level, level.meshes[i]);
+		others = {glm::min(others.least, box.least), glm::max(others.most, box.most)};
+	}
+	const glm::dvec3 gap(0.5 * glm::distance(others.least, others.most));
+	const bool around =
+		glm::all(glm::lessThan(shell.least + gap, others.least)) && glm::all(glm::lessThan(others.most + gap, shell.most));
+	return around && level.meshes.size() > 1 ? largest : level.meshes.size();
+}
+
 } // namespace
 
 std::vector<uint8_t> chosenTriangles(const Level& level, std::span<const std::string> patterns, const std::string& option)
@@ -185,11 +219,12 @@ std::vector<uint8_t> chosenTriangles(const Level& level, std::span<const std::st
 		{
 			const auto parent = static_cast<std::size_t>(std::max(node.parent, 0));
 			reached.push_back(reachedBy(steps, node.parent < 0 ? 1 : reached[parent], node.name));
-			const bool own = by_name ? (reached.back() >> steps.size() & 1U) != 0 : by_extras && hasExtra(node, glob);
+			const bool own = by_name ? (reached.back() >> steps.size() & 1U) != 0 : by_extras && hasExtra(node.extras, glob);
 			nodes.push_back(own || (node.parent >= 0 && nodes[parent] != 0) ? 1 : 0);
 		}
 		const std::vector<bool> materials =
-			mapped(level.material_list, [&](const Material& material) { return by_material && isGlobOf(glob, material.name); });
+			mapped(level.material_list, [&](const Material& material)
+				   { return by_material ? isGlobOf(glob, material.name) : by_extras && hasExtra(material.extras, glob); });
 		bool any = false;
 		for (const Mesh& mesh : level.meshes)
 		{
@@ -233,6 +268,7 @@ void findUndrawn(const Level& level, std::vector<Finding>& findings)
 	static constexpr std::array<std::string_view, 8> kCollision{"ucx",       "ubx",      "usp",     "ucp",
 																"collision", "collider", "colonly", "convcolonly"};
 	static constexpr std::array<std::string_view, 4> kSky{"sky", "skybox", "skydome", "skysphere"};
+	const std::size_t shell = shellOf(level);
 	for (const auto& [id, words] :
 		 {std::pair<const char*, std::span<const std::string_view>>("collision-meshes", kCollision), {"skies", kSky}})
 	{
@@ -245,6 +281,10 @@ void findUndrawn(const Level& level, std::vector<Finding>& findings)
 			if (named != names.end())
 			{
 				tally.add("mesh '" + mesh.name + "', which --ignore '" + std::string(*named) + "' leaves out");
+			}
+			else if (words.data() == kSky.data() && &mesh == level.meshes.data() + shell)
+			{
+				tally.add("mesh '" + mesh.name + "' around all others, which --ignore '" + pathOf(level, mesh) + "' leaves out");
 			}
 		}
 		report(findings, id, tally);

@@ -22,6 +22,8 @@ struct FileMesh
 	std::vector<glm::dvec3> positions;
 	std::vector<glm::vec3> normals; // one per position, or none
 	std::vector<glm::vec2> uvs;     // likewise
+	std::vector<glm::vec3> colours; // likewise, linear
+	std::vector<uint32_t> sources;  // number of each position in the file; none: as they follow each other
 	std::vector<uint32_t> corners;  // indices of positions, face after face
 	std::vector<uint32_t> ends;     // end of each face's corners
 };

@@ -22,9 +22,10 @@ namespace
 
 constexpr std::size_t kNone = ~std::size_t{0};
 
-// Material properties that may have an opacity texture.
+// Material properties that may have a texture of the opacity, or of the colour.
 constexpr std::array<std::string_view, 4> kOpacity{"TransparentColor", "TransparencyFactor", "3dsMax|main|opacity_map",
 												   "3dsMax|Parameters|cutout_map"};
+constexpr std::array<std::string_view, 3> kColour{"DiffuseColor", "Maya|baseColor", "3dsMax|Parameters|base_color_map"};
 
 // The file's axes and unit: UnitScaleFactor centimetres.
 FileAxes axesOf(const FbxObjects& objects)
@@ -92,6 +93,7 @@ public:
 			send(instance);
 		}
 		m_to.value(MeshHead{0, true});
+		m_to.value(m_sources);
 		m_tallies["points-or-lines"].add(m_faces.lines.first, m_faces.lines.count);
 		m_tallies["bad-polygons"] = m_faces.bad_polygons;
 		sendTallies(m_tallies, m_to);
@@ -185,21 +187,21 @@ private:
 	void sendMaterial(std::size_t index)
 	{
 		const FbxObject& material = m_objects[index];
-		const Texture opacity = index == 0 ? Texture{} : opacityTexture(material);
+		const Texture opacity = index == 0 ? Texture{} : textureOf(material, kOpacity);
+		const Texture colour = index == 0 ? Texture{} : textureOf(material, kColour);
 		m_to.text(index == 0 ? "default" : material.name);
 		m_to.value(static_cast<float>(index == 0 ? 1.0 : opacityOf(material, !opacity.name.empty())));
 		m_to.value(0); // two-sided: FBX has it only on nodes, and exporters set it arbitrarily
-		m_to.text(opacity.name);
-		m_to.value(MaskUse{opacity.wrap_u, opacity.wrap_v, MaskChannel::alpha_or_first});
-		m_to.value(glm::dmat3(1.0)); // already applied to the coordinates
-		m_to.values(opacity.bytes);
-		std::string colour;
-		for (const std::size_t texture : texturesAt(material, "DiffuseColor"))
+		const glm::dvec3 diffuse = m_objects.vector(material, "DiffuseColor", glm::dvec3(1.0));
+		m_to.value(glm::vec3(glm::clamp(diffuse * m_objects.number(material, "DiffuseFactor", 1.0), 0.0, 1.0)));
+		for (const Texture* const texture : {&opacity, &colour})
 		{
-			colour = colour.empty() && !contentOf(m_objects[texture]) ? fileOf(m_objects[texture]) : colour;
+			m_to.text(texture->name);
+			m_to.value(MaskUse{texture->wrap_u, texture->wrap_v, MaskChannel::alpha_or_first});
+			m_to.value(glm::dmat3(1.0)); // already applied to the coordinates
+			m_to.values(texture->bytes);
 		}
-		m_to.text(colour);
-		m_textures.push_back(opacity);
+		m_textures.push_back(opacity.name.empty() ? colour : opacity);
 		m_textures.back().bytes.clear();
 	}
 
@@ -236,9 +238,9 @@ private:
 		return textures;
 	}
 
-	Texture opacityTexture(const FbxObject& material)
+	Texture textureOf(const FbxObject& material, std::span<const std::string_view> properties)
 	{
-		for (const std::string_view property : kOpacity)
+		for (const std::string_view property : properties)
 		{
 			for (const std::size_t index : texturesAt(material, property))
 			{
@@ -462,6 +464,7 @@ private:
 		{
 			sendGroup(material, polygons);
 		}
+		m_sources += m_mesh.points.size();
 	}
 
 	void checkTriangles()
@@ -541,7 +544,9 @@ private:
 		const auto named = std::find_if(m_mesh.uvs.begin(), m_mesh.uvs.end(),
 										[&](const FbxLayer& set) { return set.name == texture.uv_set && !texture.uv_set.empty(); });
 		const FbxLayer* const uvs = named != m_mesh.uvs.end() ? &*named : m_mesh.uvs.empty() ? nullptr : &m_mesh.uvs.front();
-		m_part = {m_name, static_cast<uint32_t>(material), {}, {}, {}, {}, {}};
+		m_part = {};
+		m_part.name = m_name;
+		m_part.material = static_cast<uint32_t>(material);
 		for (const std::size_t polygon : polygons)
 		{
 			for (std::size_t corner = firstOf(polygon); corner < m_mesh.ends[polygon]; ++corner)
@@ -564,6 +569,7 @@ private:
 		}
 		m_part.corners.push_back(static_cast<uint32_t>(m_part.positions.size()));
 		m_part.positions.push_back(m_mesh.points[point]);
+		m_part.sources.push_back(static_cast<uint32_t>(m_sources + point));
 		if (m_mesh.normals.by != FbxLayer::By::other)
 		{
 			m_part.normals.push_back(normalAt(corner, point, polygon));
@@ -608,6 +614,7 @@ private:
 	SentTallies m_tallies;
 	FaceCutter m_faces;
 	uint64_t m_triangles = 0; // of all instances so far
+	uint64_t m_sources = 0;   // points of the instances before
 
 	// The current instance, with points in world space.
 	std::string m_name;

@@ -4,8 +4,11 @@
 
 #include "core/decimal.h"
 #include "core/error.h"
+#include "core/file.h"
+#include "core/image.h"
 #include "core/json_text.h"
 #include "core/lists.h"
+#include "scene/load_parts.h"
 
 #include <algorithm>
 #include <array>
@@ -548,26 +551,80 @@ private:
 		return factor;
 	}
 
+	std::size_t addImage(const std::string& name, std::string_view png)
+	{
+		const std::size_t view = m_editor.addView(Document::object(), png);
+		Document image{{"name", name}, {"mimeType", "image/png"}, {"bufferView", view}};
+		items("images").push_back(std::move(image));
+		return items("images").size() - 1;
+	}
+
 	// The index of a texture made of a PNG file.
 	std::size_t textureOf(std::string_view png)
 	{
-		const std::size_t image = items("images").size(); // a missing list that items() adds moves the others
-		const std::size_t view = m_editor.addView(Document::object(), png);
+		const std::size_t image = addImage("visibility", png);
 		if (m_sampler == kNoNumber)
 		{
 			m_sampler = items("samplers").size();
 			items("samplers").push_back({{"magFilter", 9729U}, {"minFilter", 9987U}, {"wrapS", 33071U}, {"wrapT", 33071U}});
 		}
-		items("images").push_back({{"name", "visibility"}, {"mimeType", "image/png"}, {"bufferView", view}});
 		items("textures").push_back({{"sampler", m_sampler}, {"source", image}});
 		return items("textures").size() - 1;
 	}
 
-	// Gives a material the texture, and keeps the strength of an earlier one.
-	void setTexture(std::size_t material, std::size_t texture, std::size_t set)
+	// A copy of a texture with another picture, scaled to its size, as its red channel.
+	std::size_t withRed(std::size_t texture, std::string_view png)
 	{
-		Document& to = items("materials")[material]["occlusionTexture"];
-		Document use{{"index", texture}, {"texCoord", set}};
+		Document made = items("textures")[texture];
+		const std::size_t number = numberIn(made, "source");
+		const std::string where = "textures[" + std::to_string(texture) + "]";
+		if (number == kNoNumber)
+		{
+			m_editor.fail(where, "no image of the core format", "a PNG or JPEG for the red channel", ExitCode::unsupported);
+		}
+		const JsonValue item = m_editor.file.root().item("images", number);
+		const std::string uri = item.text("uri");
+		const std::string path = uri.empty() || uri.starts_with("data:") ? "" : besideLevel(m_editor.file.path, unescaped(uri));
+		checkInside(m_editor.file.path, "images[" + std::to_string(number) + "]", path, m_editor.file.settings);
+		const std::string bytes = !path.empty() ? readFile(path)
+								  : uri.empty()
+									  ? std::string(viewBytes(m_editor.file, numberIn(items("images")[number], "bufferView")))
+									  : dataOf(uri, item).value_or("");
+		const Image image = decodeImage(bytes, path.empty() ? "image.png" : path);
+		const auto is_fine = [](float value)
+		{
+			return std::fabs(255.0F * value - std::round(255.0F * value)) > 0.01F;
+		};
+		if (std::any_of(image.values.begin(), image.values.end(), is_fine))
+		{
+			m_editor.fail(where, "more than 8 bits per channel", "8 bits, for the red channel", ExitCode::unsupported);
+		}
+		std::vector<AlphaImage> red =
+			decodeAlphas({{"visibility.png", "", std::string(png), MaskChannel::red}}, m_editor.file.path);
+		const Mask values{"", red[0].width_px, red[0].height_px, Wrap::clamp, Wrap::clamp, std::move(red[0].alpha)};
+		made["source"] = addImage(textIn(items("images")[number], "name"), pngWithChannel(image, 0, values));
+		items("textures").push_back(made);
+		return items("textures").size() - 1;
+	}
+
+	// Gives a material the texture, and keeps the strength of an earlier one.
+	void setTexture(std::size_t material, std::string_view png, std::size_t set)
+	{
+		constexpr const char* kRough = "metallicRoughnessTexture";
+		const Document pbr = items("materials")[material].value("pbrMetallicRoughness", Document::object());
+		const std::size_t rough = m_bake.in_red && pbr.contains(kRough) ? numberIn(pbr[kRough], "index") : kNoNumber;
+		const auto [known, is_new] = m_textures.try_emplace({png.data(), rough}, 0);
+		if (is_new)
+		{
+			known->second = rough == kNoNumber ? textureOf(png) : withRed(rough, png);
+		}
+		Document& item = items("materials")[material];
+		if (rough != kNoNumber)
+		{
+			item["pbrMetallicRoughness"][kRough]["index"] = known->second;
+		}
+		Document& to = item["occlusionTexture"];
+		Document use{{"index", known->second}, {"texCoord", set}};
 		if (to.contains("strength"))
 		{
 			use["strength"] = to["strength"];
@@ -575,31 +632,37 @@ private:
 		to = std::move(use);
 	}
 
-	// `kept`: materials that others have as well, which get copies.
+	// The material of a primitive with a page of the texture: a copy if others keep it as it is (`kept`), or it has another page.
+	std::size_t textured(std::size_t before, std::size_t page, std::string_view png, std::size_t set,
+						 const std::set<std::size_t>& kept)
+	{
+		const auto [known, is_new] = m_materials.try_emplace({before, page}, before);
+		const std::size_t next = items("materials").size();
+		if (is_new)
+		{
+			if (before == kNoNumber || kept.contains(before) || !m_textured.insert(before).second)
+			{
+				known->second = next;
+				items("materials").push_back(before == kNoNumber ? Document::object() : items("materials")[before]);
+			}
+			setTexture(known->second, png, set);
+			m_materials.emplace(std::pair(known->second, page), known->second);
+		}
+		return known->second;
+	}
+
 	void addTexture(const std::vector<MeshUnit>& units, const std::set<std::size_t>& kept)
 	{
-		const std::size_t texture = textureOf(m_bake.png);
-		std::map<std::size_t, std::size_t> made; // by the material before
 		for (const MeshUnit& unit : units)
 		{
 			for (const auto& [number, places] : unit.primitives)
 			{
 				const std::size_t mesh = numberIn(items("nodes")[unit.nodes.front()], "mesh");
 				const std::size_t before = numberIn(primitiveOf(mesh, number), "material");
-				const auto [material, is_new] = made.try_emplace(before, before);
-				if (is_new)
-				{
-					if (before == kNoNumber || kept.contains(before))
-					{
-						material->second = items("materials").size();
-						items("materials").push_back(before == kNoNumber ? Document::object() : items("materials")[before]);
-					}
-					const auto set = m_set_of_material.find(before);
-					setTexture(material->second, texture,
-							   set != m_set_of_material.end() ? static_cast<uint32_t>(set->second) : m_bake.uv_set.value_or(0));
-					made.emplace(material->second, material->second);
-				}
-				primitiveOf(mesh, number)["material"] = made.at(before);
+				const auto set = m_set_of_material.find(before);
+				primitiveOf(mesh, number)["material"] =
+					textured(before, 0, m_bake.png,
+							 set != m_set_of_material.end() ? static_cast<uint32_t>(set->second) : m_bake.uv_set.value_or(0), kept);
 			}
 		}
 	}
@@ -677,11 +740,9 @@ private:
 		const std::size_t set = freeSet(units);
 		std::set<std::size_t> used = m_bake.others_stay ? meshesOfOthers(units) : std::set<std::size_t>();
 		const std::set<std::size_t> kept = materialsOfOthers(units, used);
-		const std::vector<std::size_t> textures = mapped(m_bake.pages, [this](const std::string& png) { return textureOf(png); });
 		std::map<std::size_t, Document> originals;
 		std::map<std::pair<std::size_t, std::size_t>, Document> split; // attributes and morph targets by primitive
 		std::map<std::tuple<std::size_t, std::size_t, std::vector<uint32_t>>, std::size_t> known; // accessors of indices
-		std::map<std::pair<std::size_t, std::size_t>, std::size_t> materials;                     // by material and page
 		for (const MeshUnit& unit : units)
 		{
 			const Document& original = originals.try_emplace(unit.mesh, items("meshes")[unit.mesh]).first->second;
@@ -734,17 +795,7 @@ private:
 						accessor->second = m_editor.addAccessor("SCALAR", 5125, indices.size(), bytes, true);
 					}
 					primitive["indices"] = accessor->second;
-					const auto [material, is_new_material] = materials.try_emplace({before, page}, before);
-					if (is_new_material)
-					{
-						if (before == kNoNumber || kept.contains(before) || !m_textured.insert(before).second)
-						{
-							material->second = items("materials").size();
-							items("materials").push_back(before == kNoNumber ? Document::object() : items("materials")[before]);
-						}
-						setTexture(material->second, textures[page], set);
-					}
-					primitive["material"] = material->second;
+					primitive["material"] = textured(before, page, m_bake.pages[page], set, kept);
 					Document& all = items("meshes")[mesh]["primitives"];
 					if (!std::exchange(is_first, false))
 					{
@@ -760,8 +811,10 @@ private:
 	GltfEditor& m_editor;
 	const GltfBake& m_bake;
 	Document m_none = Document::array();
-	std::size_t m_sampler = kNoNumber; // of the textures
-	std::set<std::size_t> m_textured;  // materials that got a page
+	std::size_t m_sampler = kNoNumber;                                      // of the textures
+	std::map<std::pair<const char*, std::size_t>, std::size_t> m_textures;  // by picture and metallic-roughness texture
+	std::map<std::pair<std::size_t, std::size_t>, std::size_t> m_materials; // by the one before and the page
+	std::set<std::size_t> m_textured;                                       // materials that got a page
 	bool m_in_color;
 	bool m_colors;
 	std::vector<Channel> m_channels;
@@ -796,22 +849,6 @@ GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, cons
 	return made;
 }
 
-std::string levelGlb(const Level& level, std::string_view generator, const GlbBake& bake)
-{
-	assert(!level.triangles.empty() && (bake.visibility.empty() || bake.visibility.size() == level.positions.size()));
-	assert(bake.uvs.empty() == bake.png.empty() && (bake.uvs.empty() || bake.uvs.size() == level.positions.size()));
-	if (bake.visibility.empty() && bake.png.empty())
-	{
-		return levelGlb(level, generator);
-	}
-	GltfBake in;
-	static_cast<GlbBake&>(in) = bake;
-	std::vector<GltfPlace> places;
-	std::string bytes = levelGlb(level, generator, places);
-	const std::array<std::string, 1> output{"level.glb"};
-	return bakeInto(openGlb(std::move(bytes), level.name), places, in, output).files.front();
-}
-
 std::string placeValues(std::span<const GltfPlace> places, std::span<const float> front, std::span<const float> back,
 						const std::string& ending)
 {
@@ -821,11 +858,17 @@ std::string placeValues(std::span<const GltfPlace> places, std::span<const float
 	Document parts = Document::array();
 	for (const GltfPlace& place : places)
 	{
-		std::vector<float> values(place.count * sides, 1.0F);
+		std::vector<float> values(place.count * sides, 0.0F);
+		std::vector<float> times(place.count, 0.0F);
 		for (const auto& [vertex, of_level] : place.vertices)
 		{
-			values[vertex * sides] = front[of_level];
-			values[vertex * sides + sides - 1] = sides == 2 ? back[of_level] : front[of_level];
+			values[vertex * sides] += front[of_level];
+			values[vertex * sides + sides - 1] += sides == 2 ? back[of_level] : 0.0F;
+			times[vertex] += 1.0F;
+		}
+		for (std::size_t i = 0; i < values.size(); ++i)
+		{
+			values[i] = times[i / sides] > 0.0F ? values[i] / times[i / sides] : 1.0F;
 		}
 		const std::string instance = place.instance ? std::to_string(*place.instance) : "";
 		const std::string head = std::to_string(place.node) + "," + instance + "," + std::to_string(place.primitive) + ",";

@@ -89,20 +89,6 @@ std::string dataUri(const std::string& bytes)
 	return "data:application/octet-stream;base64," + base64Of({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
 }
 
-std::string escapedUri(const std::string& name)
-{
-	constexpr std::string_view kDigits = "0123456789ABCDEF";
-	constexpr std::string_view kEscaped = " \"#%<>?[\\]^`{|}:";
-	std::string uri;
-	for (const char c : name)
-	{
-		const auto byte = static_cast<unsigned char>(c);
-		const bool plain = byte > 32 && byte < 127 && kEscaped.find(c) == std::string_view::npos;
-		uri += plain ? std::string(1, c) : std::string{'%', kDigits[byte >> 4U], kDigits[byte & 15U]};
-	}
-	return uri;
-}
-
 } // namespace
 
 // In a file that was changed since, the indices of its patch may mean other items: values are then replaced where they are found.

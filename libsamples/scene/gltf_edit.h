@@ -107,6 +107,7 @@ struct GltfBake : GlbBake
 	std::optional<uint32_t> uv_set; // coordinates in the file that `png` uses, in place of `uvs`
 	std::vector<GltfCharts> charts; // for each place; a set of coordinates for them, and a page of the texture each
 	std::vector<std::string> pages; // of the texture, as PNG
+	bool in_red = false;            // textures go into the red channel of the materials' metallic-roughness textures
 	bool others_stay = false;       // nodes without a place keep their meshes without values
 	nlohmann::ordered_json record;  // asset.extras.nook: what was baked and how, "to" for the target; null: none
 };
@@ -133,7 +134,8 @@ GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, cons
 // asset.extras.nook of a .gltf or .glb file; null without a bake, and for other files.
 nlohmann::ordered_json bakeRecordOf(const std::string& path);
 
-// Values of each place's vertices in the order of the file, 1 for vertices without: as .csv, .json or .npy.
+// Values of each place's vertices in the order of the file, 1 for vertices without: as .csv, .json or .npy. A vertex of the file
+// that is several of the level's has their mean.
 std::string placeValues(std::span<const GltfPlace> places, std::span<const float> front, std::span<const float> back,
 						const std::string& ending);
 

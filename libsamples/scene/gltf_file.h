@@ -192,6 +192,9 @@ struct PlacedNode
 	std::optional<std::size_t> parent{}; // a node
 };
 
+// The members of an item's "extras": "key=value".
+std::vector<std::string> extrasOf(const JsonValue& item);
+
 // The node's local transform.
 glm::dmat4 localOf(const JsonValue& node);
 

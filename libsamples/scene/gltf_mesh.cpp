@@ -344,12 +344,7 @@ private:
 
 	int addPart(const JsonValue& item, int parent)
 	{
-		PartNode& part = m_level.nodes.emplace_back(PartNode{item.name(), parent, {}});
-		const nlohmann::json extras = item.value->value("extras", nlohmann::json());
-		for (auto at = extras.begin(); extras.is_object() && at != extras.end(); ++at)
-		{
-			part.extras.push_back(at.key() + "=" + (at->is_string() ? at->get<std::string>() : at->dump()));
-		}
+		m_level.nodes.push_back({item.name(), parent, extrasOf(item)});
 		return static_cast<int>(m_level.nodes.size()) - 1;
 	}
 

@@ -61,6 +61,7 @@ public:
 		{
 			SourceMaterial& made = m_source.materials.emplace_back();
 			made.material.name = item.name();
+			made.material.extras = extrasOf(item);
 			made.material.two_sided = item.boolean("doubleSided", false);
 			made.material.cutoff = item.number("alphaCutoff", 0.5);
 			const std::string mode = item.text("alphaMode", "OPAQUE");
@@ -310,6 +311,17 @@ glm::dmat4 localOf(const JsonValue& node)
 	return placeOf(t.empty() ? glm::dvec3(0.0) : glm::dvec3(t[0], t[1], t[2]),
 				   r.empty() ? glm::dvec4(0.0, 0.0, 0.0, 1.0) : glm::dvec4(r[0], r[1], r[2], r[3]),
 				   s.empty() ? glm::dvec3(1.0) : glm::dvec3(s[0], s[1], s[2]));
+}
+
+std::vector<std::string> extrasOf(const JsonValue& item)
+{
+	std::vector<std::string> pairs;
+	const nlohmann::json extras = item.value->value("extras", nlohmann::json());
+	for (auto at = extras.begin(); extras.is_object() && at != extras.end(); ++at)
+	{
+		pairs.push_back(at.key() + "=" + (at->is_string() ? at->get<std::string>() : at->dump()));
+	}
+	return pairs;
 }
 
 LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level, std::optional<uint32_t> second_set)

@@ -85,8 +85,13 @@ Bounds boundsOf(const Level& level, std::size_t triangle)
 
 Bounds boundsOf(const Level& level)
 {
+	return boundsOf(level, {"", 0, level.triangles.size()});
+}
+
+Bounds boundsOf(const Level& level, const Mesh& mesh)
+{
 	Bounds bounds;
-	for (std::size_t i = 0; i < level.triangles.size(); ++i)
+	for (std::size_t i = mesh.first_triangle; i < mesh.first_triangle + mesh.triangle_count; ++i)
 	{
 		const Bounds one = boundsOf(level, i);
 		bounds = {glm::min(bounds.least, one.least), glm::max(bounds.most, one.most)};

@@ -44,6 +44,8 @@ struct Mask
 	Wrap wrap_v = Wrap::repeat;
 	std::vector<uint8_t> alpha; // width × height, rows from the top; 255 is opaque
 	bool nearest = false;       // magnification filter "nearest"; else bilinear
+
+	bool operator==(const Mask&) const = default;
 };
 
 struct Material
@@ -56,6 +58,14 @@ struct Material
 	double mean_alpha = 1.0; // ᾱ of AOV eq. 5: the mean of factor × mask over the texture; 1 if opaque
 	double coverage = 1.0;   // fraction of the texture that passes the cut-off; 1 if opaque
 	bool two_sided = false;
+	std::vector<std::string> extras; // "key=value", for choosing parts
+
+	// Base colour, of formats other than glTF.
+	glm::vec3 colour{1.0F};                                // linear
+	std::string picture;                                   // replaces it: a file, or "data:…" if embedded; empty: none
+	std::array<Wrap, 2> wraps{Wrap::repeat, Wrap::repeat}; // of the picture, along u and v
+
+	bool operator==(const Material&) const = default;
 };
 
 // A node of the file's tree, or a mesh below its node.
@@ -89,6 +99,9 @@ struct Level
 	std::vector<glm::dvec3> positions; // world space, metres, y up
 	std::vector<glm::vec3> normals;    // per vertex; unit, or zero if the file has none
 	std::vector<glm::vec2> uvs;        // per vertex; v grows downward from the top row, as in glTF
+	std::vector<glm::vec3> colours;    // per vertex, linear; empty: none in the file
+	std::vector<uint32_t> sources;     // per vertex: its number in the file; empty: unknown
+	std::size_t source_count = 0;      // vertices of the file, used or not
 
 	std::vector<glm::uvec3> triangles; // vertex indices, counter-clockwise seen from the front
 	std::vector<uint32_t> materials;   // per triangle, index into material_list
@@ -108,6 +121,7 @@ struct Bounds
 };
 Bounds boundsOf(const Level& level);
 Bounds boundsOf(const Level& level, std::size_t triangle);
+Bounds boundsOf(const Level& level, const Mesh& mesh);
 
 // Alpha of a mask at texture coordinates (u, v), in [0, 1], magnified like a texture unit with the mask's filter.
 double alphaAt(const Mask& mask, glm::dvec2 uv);
@@ -127,8 +141,8 @@ void measureAlpha(Material& material, const AlphaCounts& counts);
 // Chooses parts of a level.
 
 // Returns 1 for each triangle that one of the patterns chooses. A pattern chooses nodes by name, with everything below them, and
-// meshes: "Lamp", "Lamp*"; by path: "/Room/**/Lamp", "Room/*"; "material:GLOB"; "extras:KEY" or "extras:KEY=VALUE" of nodes and
-// meshes. Empty without patterns. Throws Error (usage) for a pattern that chooses no triangle; `option` names it.
+// meshes: "Lamp", "Lamp*"; by path: "/Room/**/Lamp", "Room/*"; "material:GLOB"; "extras:KEY" or "extras:KEY=VALUE" of nodes,
+// meshes and materials. Empty without patterns. Throws Error (usage) for a pattern that chooses no triangle; `option` names it.
 std::vector<uint8_t> chosenTriangles(const Level& level, std::span<const std::string> patterns, const std::string& option);
 
 // "/Room/Lamp/Cube": what a pattern for this mesh alone may be.

@@ -2,9 +2,11 @@
 // This work is based on: Khronos Group, "glTF 2.0 Specification", ISO/IEC 12113:2022.
 #include "scene/level_glb.h"
 
+#include "core/base64.h"
 #include "core/file.h"
 #include "core/image.h"
 #include "core/json_text.h"
+#include "core/system.h"
 #include "core/words.h"
 #include "scene/gltf_file.h"
 
@@ -15,7 +17,10 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <map>
+#include <tuple>
 
 namespace nook
 {
@@ -23,6 +28,14 @@ namespace
 {
 
 using Json = nlohmann::ordered_json;
+
+// Relative to the folder where the program runs.
+std::string nearUri(const std::string& path)
+{
+	std::error_code failed;
+	const std::filesystem::path near = std::filesystem::proximate(nativePath(path), failed);
+	return (failed ? nativePath(path) : near).generic_string();
+}
 
 int wrapCode(Wrap wrap)
 {
@@ -34,9 +47,16 @@ class GlbMaterials
 {
 public:
 	// `level` must outlive this object.
-	explicit GlbMaterials(const Level& level)
-		: m_level(level), m_material(level.material_list.size(), -1), m_mask(level.masks.size(), -1)
+	GlbMaterials(const Level& level, bool with_pictures)
+		: m_level(level), m_with_pictures(with_pictures), m_material(level.material_list.size(), -1)
 	{
+	}
+
+	// Does a material use texture coordinates?
+	bool hasPicture(uint32_t index) const
+	{
+		const Material& material = m_level.material_list[index];
+		return material.mask >= 0 || (m_with_pictures && !material.picture.empty());
 	}
 
 	// The file's number of a level's material, created on first use.
@@ -49,20 +69,26 @@ public:
 		}
 		made = static_cast<int>(materials.size());
 		const Material& material = m_level.material_list[index];
-		Json item{{"name", material.name},
-				  {"pbrMetallicRoughness", {{"metallicFactor", 0.0}}}}; // metal is black without surroundings
-		if (material.alpha_mode != AlphaMode::opaque)
+		Json pbr = Json::object();
+		pbr["metallicFactor"] = 0.0; // metal is black without surroundings
+		const bool opaque = material.alpha_mode == AlphaMode::opaque;
+		const glm::vec3 colour = m_with_pictures && !material.picture.empty() ? glm::vec3(1.0F) : material.colour;
+		if (!opaque || colour != glm::vec3(1.0F))
+		{
+			pbr["baseColorFactor"] = {colour.x, colour.y, colour.z, opaque ? 1.0 : material.alpha};
+		}
+		if (hasPicture(index))
+		{
+			pbr["baseColorTexture"]["index"] = textureOf(material);
+		}
+		Json item{{"name", material.name}, {"pbrMetallicRoughness", pbr}};
+		if (!opaque)
 		{
 			item["alphaMode"] = material.alpha_mode == AlphaMode::mask ? "MASK" : "BLEND";
-			item["pbrMetallicRoughness"]["baseColorFactor"] = {1.0, 1.0, 1.0, material.alpha};
-			if (material.alpha_mode == AlphaMode::mask)
-			{
-				item["alphaCutoff"] = material.cutoff;
-			}
-			if (material.mask >= 0)
-			{
-				item["pbrMetallicRoughness"]["baseColorTexture"]["index"] = textureOf(static_cast<std::size_t>(material.mask));
-			}
+		}
+		if (material.alpha_mode == AlphaMode::mask)
+		{
+			item["alphaCutoff"] = material.cutoff;
 		}
 		item["doubleSided"] = material.two_sided;
 		materials.push_back(item);
@@ -73,30 +99,53 @@ public:
 	Json textures = Json::array();
 	Json samplers = Json::array();
 	Json images = Json::array();       // "bufferView" is set later
-	std::vector<std::string> pictures; // PNG files of the images
+	std::vector<std::string> pictures; // PNG files of the images; empty for those with a "uri"
 
 private:
 	// Texture, sampler and image share one number.
-	int textureOf(std::size_t index)
+	int textureOf(const Material& material)
 	{
-		int& made = m_mask[index];
-		if (made < 0)
+		const std::string picture = m_with_pictures ? material.picture : "";
+		const auto [known, is_new] =
+			m_textures.try_emplace({material.mask, picture, material.wraps}, static_cast<int>(textures.size()));
+		const int made = known->second;
+		if (!is_new)
 		{
-			made = static_cast<int>(textures.size());
-			const Mask& mask = m_level.masks[index];
-			textures.push_back({{"sampler", made}, {"source", made}});
-			const int filter = mask.nearest ? 9728 : 9729;
-			samplers.push_back(
-				{{"magFilter", filter}, {"minFilter", filter}, {"wrapS", wrapCode(mask.wrap_u)}, {"wrapT", wrapCode(mask.wrap_v)}});
-			images.push_back({{"name", mask.name}, {"mimeType", "image/png"}});
-			pictures.push_back(alphaPngBytes(mask.width_px, mask.height_px, mask.alpha));
+			return made;
 		}
+		const Mask* const mask = material.mask < 0 ? nullptr : &m_level.masks[static_cast<std::size_t>(material.mask)];
+		const int filter = mask != nullptr && mask->nearest ? 9728 : 9729;
+		const int distant = mask != nullptr ? filter : 9987;
+		const std::array<Wrap, 2> wraps = mask != nullptr ? std::array{mask->wrap_u, mask->wrap_v} : material.wraps;
+		textures.push_back({{"sampler", made}, {"source", made}});
+		samplers.push_back(
+			{{"magFilter", filter}, {"minFilter", distant}, {"wrapS", wrapCode(wraps[0])}, {"wrapT", wrapCode(wraps[1])}});
+		if (mask == nullptr)
+		{
+			images.push_back(
+				{{"name", material.name}, {"uri", picture.starts_with("data:") ? picture : escapedUri(nearUri(picture))}});
+			pictures.emplace_back();
+			return made;
+		}
+		images.push_back({{"name", mask->name}, {"mimeType", "image/png"}});
+		pictures.push_back(picture.empty() ? alphaPngBytes(mask->width_px, mask->height_px, mask->alpha) : masked(*mask, picture));
 		return made;
 	}
 
+	// A colour picture with a mask as its alpha.
+	static std::string masked(const Mask& mask, const std::string& picture)
+	{
+		const std::vector<uint8_t> bytes = bytesOfBase64(picture.substr(picture.find(',') + 1)).value_or(std::vector<uint8_t>());
+		const Image image = picture.starts_with("data:")
+								? decodeImage({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, mask.name)
+								: readImage(picture);
+		return pngWithChannel(image, 3, mask);
+	}
+
 	const Level& m_level;
-	std::vector<int> m_material; // file number of each material and mask, or −1
-	std::vector<int> m_mask;
+	bool m_with_pictures;
+	std::vector<int> m_material; // file number of each material, or −1
+	std::map<std::tuple<int, std::string, std::array<Wrap, 2>>, int> m_textures;
 };
 
 static_assert(std::endian::native == std::endian::little, "glTF is little-endian, and numbers are written as they lie in memory");
@@ -116,7 +165,7 @@ class Writer
 public:
 	// `places`: null, or filled with where the level's vertices are; surroundings then stay out.
 	Writer(const Level& level, std::vector<GltfPlace>* places)
-		: m_level(level), m_places(places), m_origin(glbOrigin(boundsOf(level))), m_materials(level)
+		: m_level(level), m_places(places), m_origin(glbOrigin(boundsOf(level))), m_materials(level, places != nullptr)
 	{
 		m_slot.resize(level.positions.size());
 		m_slot_of.resize(level.positions.size(), 0);
@@ -233,7 +282,19 @@ private:
 				appendRaw(m_normals, m_level.normals[v]);
 			}
 		}
-		if (m_level.material_list[material].mask >= 0)
+		const auto is_coloured = [this](uint32_t v)
+		{
+			return m_level.colours[v] != glm::vec3(1.0F);
+		};
+		if (!m_level.colours.empty() && std::any_of(vertices.begin(), vertices.end(), is_coloured))
+		{
+			attributes["COLOR_0"] = accessor(kColours, "VEC3", m_colours.size(), vertices.size());
+			for (const uint32_t v : vertices)
+			{
+				appendRaw(m_colours, m_level.colours[v]);
+			}
+		}
+		if (m_materials.hasPicture(material))
 		{
 			attributes["TEXCOORD_0"] = accessor(kUvs, "VEC2", m_uvs.size(), vertices.size());
 			for (const uint32_t v : vertices)
@@ -294,6 +355,7 @@ private:
 		kPositions,
 		kNormals,
 		kUvs,
+		kColours,
 		kIndices,
 		kViews,
 	};
@@ -342,8 +404,8 @@ private:
 	{
 		std::string buffer;
 		std::array<std::size_t, kViews> number{};
-		const std::array<std::string*, kViews> parts{&m_positions, &m_normals, &m_uvs, &m_indices};
-		constexpr std::array<std::size_t, kViews> kStrides{12, 12, 8, 0};
+		const std::array<std::string*, kViews> parts{&m_positions, &m_normals, &m_uvs, &m_colours, &m_indices};
+		constexpr std::array<std::size_t, kViews> kStrides{12, 12, 8, 12, 0};
 		for (std::size_t i = 0; i < kViews; ++i)
 		{
 			number[i] = m_views.size();
@@ -363,6 +425,10 @@ private:
 		}
 		for (std::size_t i = 0; i < m_materials.pictures.size(); ++i)
 		{
+			if (m_materials.pictures[i].empty())
+			{
+				continue;
+			}
 			m_materials.images[i]["bufferView"] = m_views.size();
 			addView(buffer, m_materials.pictures[i]);
 		}
@@ -395,6 +461,7 @@ private:
 	std::string m_positions;
 	std::string m_normals;
 	std::string m_uvs;
+	std::string m_colours;
 	std::string m_indices;
 	Json m_nodes = Json::array();
 	Json m_cameras = Json::array();
@@ -428,6 +495,25 @@ std::string glbContainer(std::string text, std::string_view chunk, std::string_v
 		bytes.append(padded - chunk.size(), '\0');
 	}
 	return bytes.append(others);
+}
+
+std::string pngWithChannel(const Image& image, std::size_t channel, const Mask& mask)
+{
+	const std::size_t channels = image.channels.size();
+	std::vector<uint8_t> rgba;
+	for (std::size_t i = 0; i < image.values.size(); i += channels)
+	{
+		const glm::dvec2 pixel(i / channels % static_cast<std::size_t>(image.width_px),
+							   i / channels / static_cast<std::size_t>(image.width_px));
+		const double value = alphaAt(mask, (pixel + 0.5) / glm::dvec2(image.width_px, image.height_px));
+		for (std::size_t k = 0; k < 4; ++k)
+		{
+			const std::size_t from = k == 3 ? channels - 1 : channels < 3 ? 0 : k;
+			const double given = k == 3 && channels % 2 != 0 ? 1.0 : static_cast<double>(image.values[i + from]);
+			rgba.push_back(static_cast<uint8_t>(255.0 * std::clamp(k == channel ? value : given, 0.0, 1.0) + 0.5));
+		}
+	}
+	return rgbaPngBytes(image.width_px, image.height_px, rgba);
 }
 
 glm::dvec3 glbOrigin(const Bounds& bounds)

@@ -15,8 +15,8 @@ namespace nook
 {
 
 // glTF 2.0 binary without extensions and without other files: one mesh and node per mesh, in order; one primitive per material,
-// with 32-bit indices, POSITION, NORMAL if present, TEXCOORD_0 for masks; materials with alphaMode, alphaCutoff and doubleSided;
-// masks as PNG with white colour; one node per camera with its name.
+// with 32-bit indices, POSITION, NORMAL and COLOR_0 if present, TEXCOORD_0 for masks; materials with base colour, alphaMode,
+// alphaCutoff and doubleSided; masks as PNG with white colour; one node per camera with its name.
 //
 // Positions are in world space, and mesh nodes have no transform. Only if a coordinate is 8192 m or more, where 32-bit numbers
 // resolve a millimetre at best, positions are relative to the level's centre, and all mesh nodes have that translation.
@@ -28,11 +28,15 @@ namespace nook
 // Requires a triangle. Throws Error (unsupported) if the file would exceed readFile's limit. `generator`: "nook 0.1.0".
 std::string levelGlb(const Level& level, std::string_view generator);
 
-// Likewise without surroundings; appends where the level's vertices are in the file.
+// Likewise without surroundings, and with base colour textures, by names relative to the current folder; a mask's PNG then has
+// these colours. Appends where the level's vertices are in the file.
 std::string levelGlb(const Level& level, std::string_view generator, std::vector<GltfPlace>& places);
 
 // A binary glTF of a JSON text, a binary chunk and further chunks, with their heads. Throws Error (unsupported) above 1 GiB.
 std::string glbContainer(std::string text, std::string_view chunk, std::string_view others, const std::string& name);
+
+// A PNG of a picture with a mask, scaled to its size, as one of its channels: red 0 … alpha 3.
+std::string pngWithChannel(const Image& image, std::size_t channel, const Mask& mask);
 
 // Returns that centre in whole metres; 0 if all coordinates are smaller or the bounds are empty.
 glm::dvec3 glbOrigin(const Bounds& bounds);
@@ -62,7 +66,6 @@ struct GlbBake
 	std::span<const glm::vec3> bent_back{}; // for `back`: _BENT_NORMAL_BACK
 	BakedKind kind = BakedKind::visibility; // determines attribute names and range
 };
-std::string levelGlb(const Level& level, std::string_view generator, const GlbBake& bake);
 
 // Reads the vertex values of a file made by nook bake.
 

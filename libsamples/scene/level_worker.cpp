@@ -24,14 +24,17 @@ void sendMaterial(const MtlMaterial& material, TrMeaning tr, SentTallies& tallie
 	to.text(material.name);
 	to.value(opacityOf(material, tr, inverted));
 	to.value(material.two_sided ? 1 : 0);
-	to.text(material.mask.name);
-	to.value(static_cast<const MaskUse&>(material.mask));
-	to.value(material.uv_of_set);
-	to.values(material.mask.bytes);
-	to.text(material.colour);
+	to.value(material.kd);
+	for (const MtlPicture* const picture : {&material.opacity, &material.colour})
+	{
+		to.text(picture->name);
+		to.value(static_cast<const MaskUse&>(*picture));
+		to.value(picture->uv_of_set);
+		to.values(picture->bytes);
+	}
 	const std::string place = "material '" + material.name + "'";
 	tallies["inverted-transparency"].add(place, inverted ? 1 : 0);
-	tallies["not-applied"].add(place + ", map_d " + material.ignored, material.ignored.empty() ? 0 : 1);
+	tallies["not-applied"].add(place + ", map_d " + material.opacity.ignored, material.opacity.ignored.empty() ? 0 : 1);
 }
 
 void checkSize(const std::vector<FileMesh>& meshes, const std::string& path)
@@ -62,6 +65,7 @@ void placeMesh(FileMesh& mesh, const glm::dmat4& world_from_file)
 	{
 		normal = turnedNormal(turn, normal);
 	}
+	mesh.colours.resize(mesh.colours.empty() ? 0 : mesh.positions.size(), glm::vec3(1.0F));
 	mesh.uvs.resize(mesh.uvs.empty() ? 0 : mesh.positions.size(), glm::vec2(0.0F));
 	for (glm::vec2& uv : mesh.uvs)
 	{
@@ -89,6 +93,7 @@ void sendFile(MeshFile file, const std::string& path, const LoadSettings& settin
 		mesh = {};
 	}
 	to.value(MeshHead{0, true});
+	to.value(uint64_t{file.vertices});
 	tallies["points-or-lines"] = faces.lines;
 	tallies["bad-polygons"] = faces.bad_polygons;
 	sendTallies(tallies, to);

@@ -237,12 +237,17 @@ std::vector<uint32_t> dropVertices(Level& level, int threads)
 	}
 	const auto take = [&before](auto& values)
 	{
-		std::transform(before.begin(), before.end(), values.begin(), [&values](uint32_t i) { return values[i]; });
-		values.resize(before.size());
+		for (std::size_t i = 0; i < before.size() && !values.empty(); ++i)
+		{
+			values[i] = values[before[i]];
+		}
+		values.resize(values.empty() ? 0 : before.size());
 	};
 	take(level.positions);
 	take(level.normals);
 	take(level.uvs);
+	take(level.colours);
+	take(level.sources);
 	parallelForAll(level.triangles.size(), threads,
 				   [&](std::size_t i)
 				   {
@@ -252,22 +257,10 @@ std::vector<uint32_t> dropVertices(Level& level, int threads)
 	return before;
 }
 
-bool areSame(const Mask& a, const Mask& b)
-{
-	return a.name == b.name && a.width_px == b.width_px && a.height_px == b.height_px && a.wrap_u == b.wrap_u &&
-		   a.wrap_v == b.wrap_v && a.nearest == b.nearest && a.alpha == b.alpha;
-}
-
-bool areSame(const Material& a, const Material& b)
-{
-	return a.name == b.name && a.alpha_mode == b.alpha_mode && a.cutoff == b.cutoff && a.alpha == b.alpha && a.mask == b.mask &&
-		   a.mean_alpha == b.mean_alpha && a.coverage == b.coverage && a.two_sided == b.two_sided;
-}
-
 // Index of `item` in `list`; appends it if there is no equal one.
 template <class Item> std::size_t addOnce(std::vector<Item>& list, Item item)
 {
-	const auto same = std::find_if(list.begin(), list.end(), [&](const Item& other) { return areSame(other, item); });
+	const auto same = std::find(list.begin(), list.end(), item);
 	const auto index = static_cast<std::size_t>(same - list.begin());
 	if (same == list.end())
 	{
@@ -308,6 +301,13 @@ void appendLevel(Level& to, Level from, glm::dvec3 move)
 	}
 	to.normals.insert(to.normals.end(), from.normals.begin(), from.normals.end());
 	to.uvs.insert(to.uvs.end(), from.uvs.begin(), from.uvs.end());
+	if (!to.colours.empty() || !from.colours.empty())
+	{
+		to.colours.resize(vertices, glm::vec3(1.0F));
+		to.colours.insert(to.colours.end(), from.colours.begin(), from.colours.end());
+		to.colours.resize(to.positions.size(), glm::vec3(1.0F));
+	}
+	to.sources.clear();
 	for (const glm::uvec3& triangle : from.triangles)
 	{
 		// An out-of-range index stays out of range, for the diagnosis.
@@ -609,7 +609,8 @@ void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std:
 void visit(Archive& archive, Material& material)
 {
 	archive(material.name, material.alpha_mode, material.cutoff, material.alpha, material.mask, material.mean_alpha,
-			material.coverage, material.two_sided);
+			material.coverage, material.two_sided, material.extras, material.colour, material.picture, material.wraps[0],
+			material.wraps[1]);
 }
 
 void visit(Archive& archive, Mask& mask)
@@ -641,8 +642,9 @@ void visit(Archive& archive, Finding& finding)
 void visit(Archive& archive, LoadedLevel& loaded)
 {
 	Level& level = loaded.level;
-	archive(level.files, level.name, level.positions, level.normals, level.uvs, level.triangles, level.materials, level.meshes,
-			level.nodes, level.material_list, level.masks, level.cameras, loaded.diagnosis.findings);
+	archive(level.files, level.name, level.positions, level.normals, level.uvs, level.colours, level.sources, level.source_count,
+			level.triangles, level.materials, level.meshes, level.nodes, level.material_list, level.masks, level.cameras,
+			loaded.diagnosis.findings);
 }
 
 } // namespace nook

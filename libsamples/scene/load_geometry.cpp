@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Receives what level_worker.cpp and fbx_source.cpp send from their worker.
+#include "core/base64.h"
 #include "core/file.h"
 #include "core/image.h"
 #include "core/isolate.h"
@@ -44,6 +45,8 @@ public:
 		while (mesh())
 		{
 		}
+		const auto sources = static_cast<std::size_t>(m_from.value<uint64_t>());
+		m_level.source_count = sources == 0 ? m_level.positions.size() : sources;
 		for (const std::string_view id : kSentFindings)
 		{
 			Tally tally;
@@ -99,8 +102,10 @@ private:
 			made.material.name = m_from.text();
 			made.material.alpha = static_cast<double>(m_from.value<float>());
 			made.material.two_sided = m_from.value<int>() != 0;
+			made.material.colour = m_from.value<glm::vec3>();
 			Texture opacity = texture();
-			const std::string colour = m_from.text();
+			const Texture colour = texture();
+			made.uv_of_set = opacity.name.empty() ? colour.uv_of_set : opacity.uv_of_set;
 			if (!std::isfinite(made.material.alpha) || made.material.alpha < 0.0 || made.material.alpha > 1.0)
 			{
 				refuseInput(m_path + ": material '" + made.material.name + "'",
@@ -109,18 +114,34 @@ private:
 			if (!opacity.name.empty())
 			{
 				made.material.alpha_mode = AlphaMode::mask;
-				made.uv_of_set = opacity.uv_of_set;
 				made.mask = maskOf(std::move(opacity));
 			}
 			else if (made.material.alpha < 1.0)
 			{
 				made.material.alpha_mode = AlphaMode::blend;
 			}
-			if (!colour.empty())
-			{
-				noteMissingFile(m_source, besideLevel(m_path, colour));
-			}
+			made.material.picture = pictureOf(colour);
+			made.material.wraps = {colour.use.wrap_u, colour.use.wrap_v};
 		}
+	}
+
+	std::string pictureOf(const Texture& texture)
+	{
+		const std::string_view bytes(texture.bytes.data(), texture.bytes.size());
+		if (!bytes.empty())
+		{
+			const std::string type = bytes.starts_with("\x89PNG") ? "png" : bytes.starts_with("\xff\xd8") ? "jpeg" : "";
+			return type.empty() ? ""
+								: "data:image/" + type + ";base64," +
+									  base64Of({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
+		}
+		const std::string path = texture.name.empty() ? "" : besideLevel(m_path, texture.name);
+		const std::size_t missing = m_source.missing.size();
+		if (!path.empty())
+		{
+			noteMissingFile(m_source, path);
+		}
+		return m_source.missing.size() > missing ? "" : path;
 	}
 
 	int maskOf(Texture texture)
@@ -189,6 +210,19 @@ private:
 		}
 		m_level.normals.resize(vertices, glm::vec3(0.0F));
 		m_level.uvs.resize(vertices, glm::vec2(0.0F));
+		std::vector<glm::vec3> colours;
+		m_from.values(colours, 3 * kMaxTriangles);
+		if (!colours.empty() || !m_level.colours.empty())
+		{
+			m_level.colours.resize(before, glm::vec3(1.0F));
+			m_level.colours.insert(m_level.colours.end(), colours.begin(), colours.end());
+			m_level.colours.resize(vertices, glm::vec3(1.0F));
+		}
+		m_from.values(m_level.sources, 3 * kMaxTriangles);
+		while (m_level.sources.size() < vertices) // numbered as they follow each other
+		{
+			m_level.sources.push_back(static_cast<uint32_t>(m_level.sources.size()));
+		}
 		m_from.values(m_level.triangles, kMaxTriangles);
 		mesh.triangle_count = m_level.triangles.size() - mesh.first_triangle;
 		for (std::size_t i = mesh.first_triangle; i < m_level.triangles.size(); ++i)
@@ -395,6 +429,10 @@ void finishMaterials(const LoadSettings& settings, LevelSource& source, Level& l
 	{
 		Material& material = level.material_list.emplace_back(from.material);
 		material.mask = from.mask;
+		if (from.mask >= 0 && !material.picture.starts_with("data:") && !material.picture.empty())
+		{
+			checkInside(source.files.front(), "picture of material '" + material.name + "'", material.picture, settings);
+		}
 		measureAlpha(material, from.mask < 0 ? AlphaCounts{} : counts[static_cast<std::size_t>(from.mask)]);
 	}
 	if (level.material_list.empty())

@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -78,8 +79,9 @@ constexpr std::array<Type, 8> kTypes{{{"char int8", 1, true},
 									  {"double float64", 8, false}}};
 constexpr std::array<std::string_view, 3> kFormats{"ascii", "binary_little_endian", "binary_big_endian"};
 
-// Names of the numbers of a vertex: position, normal, texture coordinates.
-constexpr std::array<std::string_view, 8> kSlots{"x", "y", "z", "nx", "ny", "nz", "u s tx texture_u", "v t ty texture_v"};
+// Names of the numbers of a vertex: position, normal, texture coordinates, colour.
+constexpr std::array<std::string_view, 11> kSlots{"x",   "y",     "z",   "nx", "ny", "nz", "u s tx texture_u", "v t ty texture_v",
+												  "red", "green", "blue"};
 
 bool hasWord(std::string_view words, std::string_view word)
 {
@@ -191,7 +193,10 @@ private:
 		splitWords(line, words);
 		if (words.empty() || words[0] == "comment" || words[0] == "obj_info")
 		{
-			material.colour = words.size() > 2 && words[1] == "TextureFile" ? textFrom(words, 2) : material.colour;
+			if (words.size() > 2 && words[1] == "TextureFile")
+			{
+				material.colour.name = textFrom(words, 2);
+			}
 			return;
 		}
 		if (words[0] == "format")
@@ -260,7 +265,8 @@ private:
 			}
 			else if (property.slot < kSlots.size())
 			{
-				m_numbers[property.slot] = value;
+				const bool scaled = property.slot >= kFirstColour && property.whole;
+				m_numbers[property.slot] = scaled ? value / (std::exp2(8.0 * static_cast<double>(property.bytes)) - 1.0) : value;
 			}
 		}
 		return true;
@@ -309,6 +315,10 @@ private:
 		if (element.has(6, 7))
 		{
 			mesh.uvs.emplace_back(m_numbers[6], m_numbers[7]);
+		}
+		if (element.has(kFirstColour, kFirstColour + 2))
+		{
+			mesh.colours.push_back(linearOf({m_numbers[kFirstColour], m_numbers[kFirstColour + 1], m_numbers[kFirstColour + 2]}));
 		}
 		if (element.name == "face")
 		{
@@ -365,6 +375,7 @@ private:
 	}
 
 	static constexpr uint32_t kNone = ~0U;
+	static constexpr std::size_t kFirstColour = 8; // of kSlots
 
 	const std::string& m_bytes;
 	const std::string& m_path;
@@ -508,6 +519,16 @@ std::optional<double> numberOf(std::string_view word)
 	return odd == "inf"   ? std::optional(sign * std::numeric_limits<double>::infinity())
 		   : odd == "nan" ? std::optional(std::numeric_limits<double>::quiet_NaN())
 						  : std::nullopt;
+}
+
+glm::vec3 linearOf(glm::dvec3 colour)
+{
+	for (int i = 0; i < 3; ++i)
+	{
+		const double value = std::isnan(colour[i]) ? 1.0 : std::clamp(colour[i], 0.0, 1.0);
+		colour[i] = value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+	}
+	return glm::vec3(colour);
 }
 
 std::string textFrom(const std::vector<std::string_view>& words, std::size_t first)

@@ -21,15 +21,20 @@
 namespace nook
 {
 
+struct MtlPicture : MaskSource // an empty name means none
+{
+	glm::dmat3 uv_of_set{1.0};
+	std::string ignored; // the first unsupported option
+};
+
 struct MtlMaterial
 {
 	std::string name;
 	std::optional<float> d;  // opacity, 0 to 1
 	std::optional<float> tr; // 0 to 1: transparency by the specification, opacity in some programs
-	MaskSource mask;         // map_d; an empty name means none
-	glm::dmat3 uv_of_set{1.0};
-	std::string ignored; // the first unsupported option of map_d
-	std::string colour;  // map_Kd
+	glm::vec3 kd{1.0F};
+	MtlPicture opacity; // map_d
+	MtlPicture colour;  // map_Kd
 	bool two_sided = false;
 };
 
@@ -56,6 +61,7 @@ struct MeshFile
 	std::vector<FileMesh> meshes; // in the file's units and axes, v upward; missing normals and coordinates are zero, or at the end
 	std::vector<std::string> files;   // others that were read
 	std::vector<std::string> missing; // others that are named but missing
+	std::size_t vertices = 0;         // that FileMesh::sources refers to
 };
 
 // Contents of a file without a byte order mark. Throws Error (file).
@@ -85,6 +91,9 @@ inline constexpr const char* kNoMaterial = "DefaultMaterial";
 // "1", "-.5e3", "+1.", "nan", "-inf", and the forms of Microsoft's C library: "1.#QNAN", "-nan(ind)"; none for other words.
 // Correctly rounded to 64 bits; infinite or 0 outside their range.
 std::optional<double> numberOf(std::string_view word);
+
+// 8-bit sRGB, scaled to 0 to 1, → linear (IEC 61966-2-1).
+glm::vec3 linearOf(glm::dvec3 colour);
 
 // A 32-bit integer, optionally with a sign and leading zeros; none for anything else.
 std::optional<int> wholeOf(std::string_view word);

@@ -41,6 +41,7 @@ public:
 		each([&](std::string_view keyword, const TextPlace& place) { takeNumbers(keyword, place); }); // faces may precede them
 		each([&](std::string_view keyword, const TextPlace& place) { takeElement(keyword, place); });
 		std::erase_if(m_file.meshes, [](const FileMesh& mesh) { return mesh.ends.empty(); });
+		m_file.vertices = m_positions.size();
 		return std::move(m_file);
 	}
 
@@ -80,6 +81,11 @@ private:
 		else
 		{
 			m_positions.push_back(count == 4 ? point / numbers[3] : point);
+			if (count > 4)
+			{
+				m_colours.resize(m_positions.size(), glm::vec3(1.0F));
+				m_colours.back() = linearOf({numbers[3], numbers[4], numbers[5]});
+			}
 		}
 	}
 
@@ -196,6 +202,11 @@ private:
 			mesh.normals.resize(mesh.positions.size(), glm::vec3(0.0F));
 			mesh.normals.push_back(m_normals[indices[2]]);
 		}
+		if (!m_colours.empty())
+		{
+			mesh.colours.push_back(indices[0] < m_colours.size() ? m_colours[indices[0]] : glm::vec3(1.0F));
+		}
+		mesh.sources.push_back(static_cast<uint32_t>(indices[0]));
 		mesh.positions.push_back(m_positions[indices[0]]);
 	}
 
@@ -228,6 +239,7 @@ private:
 	std::vector<glm::dvec3> m_positions;
 	std::vector<glm::vec2> m_uvs;
 	std::vector<glm::vec3> m_normals;
+	std::vector<glm::vec3> m_colours;      // of the first positions
 	std::array<std::size_t, 3> m_before{}; // how many of these precede the line
 	std::string m_group;
 	std::string m_object;
@@ -242,30 +254,28 @@ class PictureLine
 public:
 	PictureLine(const std::vector<std::string_view>& words, const TextPlace& place) : m_words(words), m_place(place) {}
 
-	void read(MtlMaterial& material)
+	MtlPicture read()
 	{
-		MaskSource mask;
-		mask.channel = MaskChannel::alpha_or_first;
-		material.ignored.clear();
+		MtlPicture picture;
+		picture.channel = MaskChannel::alpha_or_first;
 		while (m_at < m_words.size() && m_words[m_at].starts_with('-'))
 		{
 			m_option = lowered(m_words[m_at++]);
-			if (take(mask) && material.ignored.empty())
+			if (take(picture) && picture.ignored.empty())
 			{
-				material.ignored = m_option;
+				picture.ignored = m_option;
 			}
 		}
 		if (m_at >= m_words.size())
 		{
 			m_place.fail("nothing", "the name of a file behind " + std::string(m_words[0]));
 		}
-		mask.name = textFrom(m_words, m_at);
-		material.mask = mask;
+		picture.name = textFrom(m_words, m_at);
 		// v grows upward in the file and downward in a level.
-		material.uv_of_set = glm::dmat3(1.0);
-		material.uv_of_set[0][0] = m_scale[0];
-		material.uv_of_set[1][1] = m_scale[1];
-		material.uv_of_set[2] = {m_offset[0], 1.0 - m_scale[1] - m_offset[1], 1.0};
+		picture.uv_of_set[0][0] = m_scale[0];
+		picture.uv_of_set[1][1] = m_scale[1];
+		picture.uv_of_set[2] = {m_offset[0], 1.0 - m_scale[1] - m_offset[1], 1.0};
+		return picture;
 	}
 
 private:
@@ -396,19 +406,29 @@ float shareOf(const std::vector<std::string_view>& words, const TextPlace& place
 	return static_cast<float>(value);
 }
 
-// Only the name is needed here, so defects are not errors.
-std::string colourOf(const std::vector<std::string_view>& words, const TextPlace& place)
+// Colours decide no shape, so their defects are not errors.
+MtlPicture colourOf(const std::vector<std::string_view>& words, const TextPlace& place)
 {
 	try
 	{
-		MtlMaterial material;
-		PictureLine(words, place).read(material);
-		return material.mask.name;
+		return PictureLine(words, place).read();
 	}
 	catch (const Error&)
 	{
 		return {};
 	}
+}
+
+// "Kd 0.8 0.8 0.8"; white for curves and other colour spaces.
+glm::vec3 diffuseOf(const std::vector<std::string_view>& words)
+{
+	glm::vec3 colour(1.0F);
+	for (std::size_t i = 1; i < 4 && words.size() == 4; ++i)
+	{
+		const double value = numberOf(words[i]).value_or(1.0);
+		colour[static_cast<int>(i) - 1] = value >= 0.0 && value <= 1.0 ? static_cast<float>(value) : 1.0F;
+	}
+	return colour;
 }
 
 } // namespace
@@ -437,11 +457,15 @@ void readMtl(const std::string& text, const std::string& path, MtlMaterials& mat
 		}
 		else if (keyword == "map_d")
 		{
-			PictureLine(words, place).read(*material);
+			material->opacity = PictureLine(words, place).read();
 		}
 		else if (keyword == "map_kd")
 		{
 			material->colour = colourOf(words, place);
+		}
+		else if (keyword == "kd")
+		{
+			material->kd = diffuseOf(words);
 		}
 	};
 	forLines(text, path, false, take);

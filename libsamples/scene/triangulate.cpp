@@ -200,6 +200,8 @@ void FaceCutter::send(const FileMesh& mesh, const std::vector<std::string>& path
 	to.values(mesh.positions);
 	to.values(mesh.normals);
 	to.values(mesh.uvs);
+	to.values(mesh.colours);
+	to.values(mesh.sources);
 	to.values(m_triangles);
 }
 

@@ -4,6 +4,7 @@
 #include "core/decimal.h"
 #include "core/file.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>

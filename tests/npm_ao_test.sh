@@ -26,6 +26,14 @@ mkdir public && "$nook" bake builtin:cornell --radius 1 --rays 16 -o public/bake
 "$nook" volumes builtin:cornell --distance 0.4 -o public/volumes.glb >"$folder/log" || problem "nook volumes: failed"
 checks=$((checks + 1))
 "$tools/vite" build --outDir "$folder/vite" --logLevel error >"$folder/log" 2>&1 || problem "vite build: $(tail -n 5 "$folder/log")"
+# A bundle holds only what it uses: of the passes nothing, with bakes alone.
+checks=$((checks + 1))
+for name in useBakedVisibility NookPass; do
+	echo "import { $name } from 'nook-ao'; globalThis.used = $name;" >"$name.mjs"
+	"$tools/esbuild" "$name.mjs" --bundle --minify --format=esm --external:three --external:'three/*' >"$folder/$name.js" 2>"$folder/log" || problem "esbuild: $(cat "$folder/log")"
+done
+[ $(($(wc -c <"$folder/useBakedVisibility.js") * 20)) -lt "$(wc -c <"$folder/NookPass.js")" ] ||
+	problem "bundles: found $(wc -c "$folder"/[uN]*.js), expected that of useBakedVisibility to be a twentieth of the other's"
 page_said "the page" "$tools/vite" preview --outDir "$folder/vite" --port 0
 # After a lost context three.js deletes objects of the old one, which Chromium reports.
 checks=$((checks + 1))
@@ -37,10 +45,11 @@ node - said <<-'JS' >log 2>&1 || problem "the page: $(head -c 600 log)"
 	// The largest difference of each comparison, or its value.
 	const bounds = { infinite: 1e-3, logarithmicDepthBuffer: 2e-3, reversedDepthBuffer: 2e-3, reversedHalf: 0.03, orthographic: 4e-3, half: 0.03,
 		normals: 0.01, smooth: 1, castingNormals: 0, card: 0.05, points: 0, temporal: [1e-6, 0.2], multisampled: 0.06, intensity: 2e-3, tint: 0, product: 1e-3, view: 0, split: [0, 0], afterRender: 0,
-		twice: 1e-3, postprocessing: 0, transparent: 0, over: 1e-3, layers: 0, casting: 0, bakedOnly: 1e-3, resized: 0, changed: 0, restoredContext: 0,
+		twice: 1e-3, postprocessing: 0, postTwice: 1e-3, postScene: 0, postMultisampled: 0, postResized: 0, postLayers: 0, postTransparent: 0, postRestored: 0, transparent: 0, over: 1e-3, layers: 0, casting: 0, bakedOnly: 1e-3, resized: 0, changed: 0, restoredContext: 0,
 		tinted: 0, lower: 2e-3, volumesReversed: 3e-3 };
 	const rest = { sky: 1, restored: [9, true, 0x8080ff], meshes: 1, level: true, kept: true, noVolumes: null, nothing: null, memory: 0,
 		disposed: 'Error: NookPass: found render after dispose, expected a new pass',
+		postDisposed: 'Error: NookPass: found render after dispose, expected a new pass',
 		volumesDisposed: 'Error: NookVolumes: found render after dispose, expected a new one' };
 	const found = { ...differences }, wrong = [];
 	for (const [name, bound] of Object.entries(bounds)) {
@@ -67,6 +76,8 @@ node - said <<-'JS' >log 2>&1 || problem "the page: $(head -c 600 log)"
 		'RangeError: NookAO: found a size of NaN x 108, expected two numbers',
 		'RangeError: NookPass: intensity: found NaN, expected a number above 0',
 		'RangeError: NookAO: camera: projection: found infinity or NaN, expected 16 finite numbers',
+		'Error: NookPass: found no EXT_color_buffer_float, expected it to draw linear depth',
+		'Error: NookAO: found no WebGL 2, expected it',
 		'Error: NookAO: found a WebGPURenderer, expected a WebGLRenderer; nook-ao/webgpu is for the other',
 	]);
 JS
@@ -76,7 +87,7 @@ cp said webgl_said
 (
 	cd "$folder/app" || exit 1
 	page_path=webgpu.html
-	page_options='--option --enable-unsafe-webgpu --option --use-webgpu-adapter=swiftshader'
+	page_options='--option --enable-unsafe-webgpu --option --use-webgpu-adapter=swiftshader --option --disable-gpu-watchdog' # a busy machine is slow
 	page_said "the page of WebGPU" "$tools/vite" preview --outDir "$folder/vite" --port 0
 )
 checks=$((checks + 1))

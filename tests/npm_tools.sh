@@ -61,7 +61,7 @@ page_said()
 		grep -q 'http://' "$folder/address" || sleep 0.5
 	done
 	address=$(sed 's/\x1b\[[0-9;]*m//g' "$folder/address" | grep -o -m 1 'http://[^ ]*')
-	node "$here/page_driver.cjs" "$browser" "$address${page_path-}" ${page_options-} >"$folder/said" 2>"$folder/faults" <<-'JS'
+	node "$here/page_driver.cjs" "$browser" "$address${page_path-}" --wait 300 ${page_options-} >"$folder/said" 2>"$folder/faults" <<-'JS'
 		while (!globalThis.said) await new Promise(later => setTimeout(later, 50));
 		return said;
 	JS

@@ -21,7 +21,7 @@ export interface NookAOOptions {
 	sky?: number;
 }
 
-export interface CompositeOptions extends NookAOOptions {
+export interface NookPassOptions extends NookAOOptions {
 	/** What to show. 'split' leaves out the obscurance in the left half. Default 'combined'. */
 	view?: View;
 	/** Colour of full obscurance. Default black. */
@@ -32,14 +32,11 @@ export interface CompositeOptions extends NookAOOptions {
 	baked?: boolean;
 	/** Static occlusion of the level, drawn with every frame; the lower visibility decides. Default null. */
 	volumes?: NookVolumes | null;
-}
-
-export interface NookPassOptions extends CompositeOptions {
-	/** false: colours come from the pass before, depth from its depth texture or a separate pass. Default true. */
+	/** false: colours come from the pass before, depth from its depth texture or a separate pass. Default true; false with `postprocessing`. */
 	renderScene?: boolean;
-	/** Samples per pixel of the frame, 0 to 16. Default 0. */
+	/** With renderScene: samples per pixel of the frame, 0 to 16. Default 0. */
 	samples?: number;
-	/** Draws transparent objects over the obscurance; they neither occlude nor receive any. Default true. */
+	/** With renderScene: draws transparent objects over the obscurance; they neither occlude nor receive any. Default true. */
 	excludeTransparent?: boolean;
 	/** Layers, 0 to 31, whose objects are treated in the same way. Default none. */
 	excludeLayers?: number[];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pass for the EffectComposer of three.js.
+// The pass for the EffectComposer of three.js, and what it shares with that for `postprocessing`.
 import {
 	AddEquation, Color, CustomBlending, DepthTexture, FloatType, HalfFloatType, MeshBasicMaterial, MeshNormalMaterial, OneFactor, RedFormat, SrcColorFactor,
 	UnsignedByteType, WebGLRenderTarget, ZeroFactor,
@@ -10,24 +10,13 @@ import { defineOptions, oneOf, rows, truth } from './options.js';
 
 const isLayers = value => Array.isArray(value) && value.every(layer => Number.isInteger(layer) && layer >= 0 && layer < 32);
 
-/** Draws the visibility of a pass, and its volumes. */
-export function obscure(pass, ao, renderer, depths, normals) {
-	for (const name of Object.keys(rows)) ao[name] = pass[name];
-	ao.camera = pass.camera;
-	return ao.render(renderer, depths, normals) && (pass.volumes === null || pass.volumes.render(renderer, pass.camera, ao.depths, normals ?? ao.normals));
-}
-
-/** Options beside those of NookAO. */
-export const passRows = {
+const passRows = {
 	...rows,
 	view: { ...oneOf('combined', 'off', 'split', 'visibility', 'normals', 'depth') },
 	tint: { fallback: 0x000000, valid: value => value !== undefined && value !== null, expected: 'a colour', stored: value => new Color(value) },
 	normals: oneOf('depth', 'pass'),
 	baked: truth(false),
 	volumes: { fallback: null, valid: value => value === null || typeof value?.render === 'function', expected: 'a NookVolumes or null' },
-};
-const sceneRows = {
-	...passRows,
 	renderScene: truth(true),
 	samples: { fallback: 0, valid: value => Number.isInteger(value) && value >= 0 && value <= 16, expected: 'a whole number from 0 to 16' },
 	excludeTransparent: truth(true),
@@ -39,8 +28,8 @@ const blend = {
 };
 const views = ['combined', 'off', 'split', 'visibility', 'normals', 'depth'];
 
-/** Draws colours × visibility, or one of the views. Shared by the passes of all composers. */
-export class Composite {
+/** Draws colours × visibility, or one of the views. */
+class Composite {
 	constructor() {
 		const body = `uniform sampler2D colours, visibilities, depths, normals, statics;
 uniform vec3 tint;
@@ -121,7 +110,7 @@ function cutHoles(shader) {
 }
 
 /** Draws the scene's depth, where no texture has it, and the normals of its materials: smooth, mapped, of both sides, with holes. */
-export class Prepass {
+class Prepass {
 	constructor() {
 		this.materials = new Map(); // a material's normals by the material
 		this.target = targetOf(UnsignedByteType);
@@ -183,16 +172,17 @@ export class Prepass {
 const owners = new WeakMap(); // buffers of composers to the pass that last wrote them
 let clock = 0;
 
-/** Draws a scene with ambient obscurance, in place of a RenderPass; with renderScene: false after one. */
-export class NookPass extends Pass {
+/** A pass that draws a scene with ambient obscurance, in place of a RenderPass; with renderScene: false after one. Base: a composer's Pass. */
+export const passOn = Base => class extends Base {
 	constructor(scene, camera, width = 512, height = 512, options = {}) {
-		super();
-		defineOptions(this, 'NookPass', sceneRows, options);
+		super('NookPass', scene, camera);
+		defineOptions(this, 'NookPass', passRows, options);
 		this.scene = scene;
 		this.camera = camera;
 		this._ao = new NookAO(camera, width, height);
 		this._composite = new Composite();
 		this._prepass = null;
+		this._depths = null; // of the picture that comes in, where its buffer has none
 		this._frame = null;
 		this._alphas = null;
 		this._stamp = 0;
@@ -226,7 +216,7 @@ export class NookPass extends Pass {
 		if (this.renderScene && !follows) {
 			this._drawScene(renderer, target, width, height);
 		} else {
-			const depths = follows?._frame.depthTexture ?? readBuffer.depthTexture;
+			const depths = follows?._frame.depthTexture ?? this._depths ?? readBuffer.depthTexture;
 			if (!depths || this.normals === 'pass') this._draw(renderer, width, height);
 			if (this._obscure(renderer, depths ?? this._prepass.target.depthTexture)) this._show(renderer, readBuffer.texture, target);
 		}
@@ -255,7 +245,10 @@ export class NookPass extends Pass {
 	}
 
 	_obscure(renderer, depths) {
-		return obscure(this, this._ao, renderer, depths, this.normals === 'pass' ? this._prepass.target.texture : null);
+		const ao = this._ao, normals = this.normals === 'pass' ? this._prepass.target.texture : null;
+		for (const name of Object.keys(rows)) ao[name] = this[name];
+		ao.camera = this.camera;
+		return ao.render(renderer, depths, normals) && (this.volumes === null || this.volumes.render(renderer, this.camera, ao.depths, normals ?? ao.normals));
 	}
 
 	_show(renderer, colours, target) {
@@ -325,7 +318,9 @@ export class NookPass extends Pass {
 		});
 		return excluded;
 	}
-}
+};
+
+export class NookPass extends /* @__PURE__ */ passOn(Pass) {}
 
 const invisible = [0, 1, 2].map(side => new MeshBasicMaterial({ colorWrite: false, depthWrite: false, side }));
 

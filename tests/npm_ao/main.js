@@ -21,6 +21,7 @@ const rendererOf = options => {
 const renderer = rendererOf();
 document.body.append(renderer.domElement);
 
+const NookPostPass = nookPassFor(POST.Pass);
 const { scene, grey, box, ball } = sceneOf();
 const camera = cameraOf(new THREE.PerspectiveCamera(50, width / height, 0.1, 100));
 
@@ -54,6 +55,35 @@ function drawn(options = {}, { on = renderer, from = camera, frames = 1, before 
 	pass.dispose();
 	composer.dispose();
 	return result;
+}
+// The same with the composer of `postprocessing`. then: called after the first frame, before another.
+async function posted(optionsOf, { renderPass = true, then } = {}) {
+	const composer = new POST.EffectComposer(renderer, { frameBufferType: THREE.HalfFloatType });
+	composer.setSize(width, height);
+	composer.autoRenderToScreen = false;
+	const passes = optionsOf.map(options => new NookPostPass(scene, camera, options));
+	for (const one of [...renderPass ? [new POST.RenderPass(scene, camera)] : [], ...passes]) composer.addPass(one);
+	composer.render(0);
+	if (then) {
+		await then(composer, passes[0]);
+		composer.render(0);
+	}
+	const result = { open: read(passes[0].texture, renderer), colours: read(composer[passes.length % 2 ? 'outputBuffer' : 'inputBuffer'].texture, renderer) };
+	for (const one of passes) one.dispose();
+	composer.dispose();
+	result.refused = refusal(() => passes[0].render(renderer, composer.inputBuffer, composer.outputBuffer));
+	return result;
+}
+async function loseContext(between) {
+	const context = renderer.getContext().getExtension('WEBGL_lose_context');
+	const event = name => new Promise(done => renderer.domElement.addEventListener(name, done, { once: true }));
+	const lost = event('webglcontextlost'), restored = event('webglcontextrestored');
+	context.loseContext();
+	await lost;
+	between();
+	await new Promise(done => setTimeout(done, 0));
+	context.restoreContext();
+	await restored;
 }
 const rmse = (a, b) => Math.sqrt(a.reduce((sum, one, i) => sum + (one - b[i]) ** 2, 0) / a.length);
 const mean = a => a.reduce((sum, one) => sum + one, 0) / a.length;
@@ -143,16 +173,22 @@ const second = new NookPass(scene, camera, width, height);
 differences.twice = rmse(drawn({}, { before: [second], frames: 3 }).colours, flat.colours.map((one, i) => one * base.open[i] ** 2));
 second.dispose();
 {
-	const composer = new POST.EffectComposer(renderer, { frameBufferType: THREE.HalfFloatType });
-	composer.setSize(width, height);
-	const pass = new (nookPassFor(POST.Pass))(scene, camera);
-	composer.addPass(new POST.RenderPass(scene, camera));
-	composer.addPass(pass);
-	composer.autoRenderToScreen = false;
-	composer.render(0);
-	differences.postprocessing = rmse(read(pass.texture, renderer), base.open);
-	composer.dispose();
-	pass.dispose();
+	const { open, colours, refused } = await posted([{}]);
+	differences.postprocessing = Math.max(rmse(open, base.open), rmse(colours, base.colours));
+	differences.postDisposed = refused;
+	differences.postTwice = rmse((await posted([{}, {}])).colours, flat.colours.map((one, i) => one * base.open[i] ** 2));
+	differences.postScene = rmse((await posted([{ renderScene: true }], { renderPass: false })).colours, base.colours);
+	differences.postMultisampled = rmse((await posted([{ renderScene: true, samples: 4 }], { renderPass: false })).colours, drawn({ samples: 4 }).colours);
+	const sizes = await posted([{}], { then: (composer, pass) => {
+		pass.setSize(0, 0);
+		composer.render(0);
+		for (let i = 0; i < 6; ++i) {
+			composer.setSize(width - 31 * i, height - 17 * i);
+			composer.render(0);
+		}
+		composer.setSize(width, height);
+	} });
+	differences.postResized = rmse(sizes.colours, base.colours);
 }
 
 // ---- Transparent objects and layers are drawn over the obscurance, and do not occlude.
@@ -162,10 +198,14 @@ differences.transparent = rmse(behind.open, base.open);
 const inside = i => base.colours[i] !== behind.colours[i];
 differences.over = Math.max(...behind.colours.map((one, i) => inside(i) ? Math.abs(one - (0.5 + 0.5 * base.colours[i])) : 0));
 differences.covered = behind.colours.filter((_, i) => inside(i)).length / behind.colours.length;
+const post_glass = await posted([{ renderScene: true }], { renderPass: false });
+differences.postTransparent = Math.max(rmse(post_glass.open, base.open), rmse(post_glass.colours, behind.colours));
 differences.included = rmse(drawn({ excludeTransparent: false }).open, base.open);
 glass.material = grey;
 glass.layers.enable(3);
-differences.layers = rmse(drawn({ excludeLayers: [3] }).open, base.open);
+const layers = drawn({ excludeLayers: [3] });
+differences.layers = rmse(layers.open, base.open);
+differences.postLayers = rmse((await posted([{ renderScene: true, excludeLayers: [3] }], { renderPass: false })).colours, layers.colours);
 glass.castShadow = true;
 differences.casting = rmse(drawn({ excludeLayers: [3] }).open, base.open);
 const [smooth, clear] = [[], [3]].map(excludeLayers => {
@@ -263,15 +303,7 @@ const file = await (await fetch('volumes.glb')).arrayBuffer();
 	differences.changed = rmse(read(pass.texture, renderer), high.open);
 	pass.temporal = true;
 	composer.render(0);
-	const context = renderer.getContext().getExtension('WEBGL_lose_context');
-	const event = name => new Promise(done => renderer.domElement.addEventListener(name, done, { once: true }));
-	const lost = event('webglcontextlost'), restored = event('webglcontextrestored');
-	context.loseContext();
-	await lost;
-	composer.render(0);
-	await new Promise(done => setTimeout(done, 0));
-	context.restoreContext();
-	await restored;
+	await loseContext(() => composer.render(0));
 	pass.temporal = false;
 	composer.render(0);
 	differences.restoredContext = rmse(read(pass.texture, renderer), high.open);
@@ -279,10 +311,19 @@ const file = await (await fetch('volumes.glb')).arrayBuffer();
 	pass.dispose();
 	differences.disposed = refusal(() => pass.render(renderer, composer.writeBuffer, composer.readBuffer));
 	composer.dispose();
+	differences.postRestored = rmse((await posted([{}], { then: composer => loseContext(() => composer.render(0)) })).open, base.open);
 	for (const keeper of keepers) keeper.dispose();
 	differences.memory = renderer.info.memory.textures;
 }
 
+// Contexts of older devices.
+const contextOf = (version, without) => {
+	const context = document.createElement('canvas').getContext(version);
+	const get = context.getExtension.bind(context);
+	context.getExtension = name => name === without ? null : get(name);
+	return context;
+};
+const halves = contextOf('webgl2', 'EXT_color_buffer_float');
 const unlimited = new THREE.PerspectiveCamera(50, 1, 0.1, Infinity);
 const refused = [
 	refusal(() => new NookVolumes(file.slice(0, 4000))),
@@ -294,6 +335,8 @@ const refused = [
 	refusal(() => new NookPass(scene, camera, NaN, height)),
 	refusal(() => { new NookPass(scene, camera).intensity = NaN; }),
 	refusal(() => drawn({}, { from: unlimited })),
+	refusal(() => drawn({}, { on: new THREE.WebGLRenderer({ canvas: halves.canvas, context: halves }) })),
+	refusal(() => new NookAO(camera, 8, 8).render({ getContext: () => contextOf('webgl') }, null)),
 	refusal(() => new NookAO(camera, 8, 8).render({ isWebGPURenderer: true, getContext: () => ({ isContextLost: () => false }) }, null)),
 ];
 globalThis.said = { width, height, patterns: [], projection: camera.projectionMatrix.elements,

@@ -67,6 +67,17 @@ works '' volumes builtin:cornell --distance 0.5 --compensate --verify --json -
 more "$(field verify_receivers)" 1 1000 "--verify"
 more "$(field compensate_receivers)" 1 1000 "--compensate"
 works '"detail_trials": ' volumes builtin:cave:2000 --distance 2 --detail auto:0.2 --json -
+works '"detail_trials": ' volumes builtin:cave:20000 --distance 2 --masks --detail auto --json -
+# rmse DETAIL: the error of that trial.
+rmse()
+{
+	sed -n "s/.*\"detail\": $1, .*\"rmse_fitted\": \([0-9.e-]*\) .*/\1/p" ../stdout
+}
+awk "BEGIN { all = $(rmse 0.0); chosen = $(rmse "$(field detail)"); exit !(chosen > 0 && (chosen <= 1.25 * all || chosen <= 0.015)) }" ||
+	problem "--masks --detail auto: found an RMSE of $(rmse "$(field detail)"), expected at most a quarter above $(rmse 0.0), or 0.015"
+works '"ray_distance_m": 0.5' volumes builtin:cornell --distance 0.5 --masks -o v.glb --json -
+rm v.glb
+fails 1 '--masks: found' volumes builtin:cornell --distance 0.5 --masks --compensate
 works '"compensate_refused": 0' volumes builtin:cornell --distance 0.5 --compensate --compensate-measure rmse --json -
 works '^in [0-9]+ views kept out of the fit: RMSE ' volumes builtin:cornell --distance 0.5 --compensate -o k.glb
 rm k.glb

@@ -11,7 +11,6 @@
 #include "pattern/quality.h"
 #include "scene/describe.h"
 #include "scene/gltf_edit.h"
-#include "shade/asset_kinds.h"
 #include "version.h"
 #include "volume/build.h"
 #include "volume/volume_glb.h"
@@ -154,23 +153,6 @@ void describeRecipes(const std::string& path, Facts& facts)
 	}
 }
 
-// A file of a kind of assets, by its row; empty for others. A template, like the next.
-template <class Path> std::string describeAsset(const Path& path)
-{
-	if constexpr (kHasShading)
-	{
-		for (const AssetKind& kind : assetTable())
-		{
-			std::string text = kind.describe != nullptr ? kind.describe(path) : "";
-			if (!text.empty())
-			{
-				return text;
-			}
-		}
-	}
-	return {};
-}
-
 // The record of nook bake in a file, if there is one. A template, like the next.
 void describeBake(const auto& record, Facts& facts)
 {
@@ -193,7 +175,7 @@ void describeBake(const auto& record, Facts& facts)
 	facts.text("bake_command", text("command"), "bake command");
 }
 
-// A level, volumes, another asset or an image; false for another file. A template, so that only a build with levels needs what it
+// A level, volumes or an image; false for another file. A template, so that only a build with levels needs what it
 // calls.
 template <class Options> bool describeOfLevels(const Options& options, const RunSettings& settings, Facts& facts)
 {
@@ -204,12 +186,6 @@ template <class Options> bool describeOfLevels(const Options& options, const Run
 		VolumeFileFacts file;
 		const VolumeSet volumes = readVolumes(options.file, file);
 		describeVolumes(volumes, file, facts);
-	}
-	else if (const std::string text = describeAsset(options.file); !text.empty())
-	{
-		refuseOther(options, kDomainOption, "a pattern without a domain");
-		refuseOther(options, kLoadOptions, "a level");
-		facts.line(text.substr(0, text.find_last_not_of('\n') + 1));
 	}
 	else if (isLevelName(options.file))
 	{

@@ -89,22 +89,6 @@ std::string methodsAlone()
 	return "--method " + joinedText(kindsBesideMethods(), "|", [](const AssetKind* kind) { return kind->name; });
 }
 
-// Files of kinds that are drawn by their rows alone.
-std::vector<OptionRow> assetRows(ComposeSettings& compose)
-{
-	std::vector<OptionRow> rows;
-	for (const AssetKind* const kind : kindsBesideMethods())
-	{
-		if (kind->read != nullptr)
-		{
-			const std::string method = "--method " + std::string(kind->name);
-			rows.push_back({std::string(kind->option), takesText(compose.asset_path, "FILE"),
-							"With " + method + ": " + std::string(kind->what), needs(method, method, "with another method")});
-		}
-	}
-	return rows;
-}
-
 // Rules of options that screen-space methods alone have.
 OptionRules ofScreen()
 {
@@ -222,7 +206,6 @@ void declare(CLI::App& app, ShadeOptions& options)
 	addOptions(app, {feature("--filter", ". Default here: bilateral, but for " + methodNames(quiet) + ", which has no noise"),
 					 feature("--strength"), feature("--power")});
 	addOptions(app, volumeRows(compose));
-	addOptions(app, assetRows(compose));
 	addOptions(app, {feature("--taps"),
 					 {"--resolution", takesChoice(kResolutions, options.resolution),
 					  "full (default), or half: every second pixel of both axes, the others from those of their surface; " +
@@ -240,19 +223,14 @@ void declare(CLI::App& app, ShadeOptions& options)
 	options.app = &app;
 }
 
-// A bake, or another asset that is drawn by itself, needs nothing but its file.
+// An asset that is drawn by itself needs nothing but its file.
 void checkAlone(const ShadeOptions& options, const AssetKind& kind)
 {
 	const ComposeSettings& compose = options.compose;
 	const std::string method = "--method " + std::string(kind.name);
-	if ((kind.read != nullptr ? compose.asset_path : compose.bake).empty())
+	if (compose.bake.empty())
 	{
-		refuse(std::string(kind.option) + ": found none with " + method + ", expected " +
-			   (kind.read != nullptr ? "its file" : "a file of nook bake"));
-	}
-	if (kind.read != nullptr && !compose.bake.empty())
-	{
-		refuse("--bake: found with " + method + ", which does not read it, expected another method");
+		refuse(std::string(kind.option) + ": found none with " + method + ", expected a file of nook bake");
 	}
 	if (compose.gl || options.timing || options.resolution != 0)
 	{
@@ -314,7 +292,6 @@ void settle(ShadeOptions& options)
 	ShadeSettings& settings = compose.shade;
 	const AssetKind* const kind = kindAlone(options);
 	const MethodRow* const row = kind != nullptr ? nullptr : &methodTable()[options.method];
-	compose.asset = kind != nullptr && kind->read != nullptr ? kind : nullptr;
 	compose.screen = row != nullptr && row->kind == MethodKind::screen;
 	compose.drawing.repetitions = options.timing ? kRepetitions : 0;
 	if (!compose.screen)
@@ -338,7 +315,7 @@ void settle(ShadeOptions& options)
 std::vector<std::string> filesOf(const ShadeOptions& options)
 {
 	std::vector<std::string> files{options.gbuffer, options.compose.pattern, isRecipeFile(options.recipe) ? options.recipe : "",
-								   options.compose.volumes, options.compose.asset_path};
+								   options.compose.volumes};
 	std::erase(files, "");
 	return files;
 }

@@ -4,7 +4,6 @@
 #include "scene_options.h"
 
 #include "core/decimal.h"
-#include "core/system.h"
 #include "core/work_units.h"
 #include "scene/tracer.h"
 #include "version.h"
@@ -14,8 +13,6 @@
 #include "volume/volumes.h"
 
 #include <array>
-#include <chrono>
-#include <cstdio>
 #include <optional>
 
 namespace nook
@@ -78,7 +75,7 @@ void takeDetail(const std::string& option, const std::string& text, VolumeSettin
 		settings.occluders.detail = shareOfText(option, text, false);
 		return;
 	}
-	double& more = settings.detail_more.emplace(DetailSettings{}.more);
+	double& more = settings.detail_more.emplace(0.0);
 	if (text != kAuto)
 	{
 		more = shareUpToOne(option, text.starts_with("auto:") ? text.substr(kAuto.size() + 1) : text);
@@ -121,7 +118,8 @@ std::vector<OptionRow> occluderRows(OccluderSettings& occluders, VolumeSettings&
 		 "nearer to what rays give"},
 		{"--detail", takesParsed("SHARE", take_detail),
 		 "Simplifies surfaces that darken on one side only, moving them by about this share at most of the distance, below 1; "
-		 "auto: as far as errors at sampled points grow by a twentieth at most, auto:SHARE: by that share (default: not)"}};
+		 "auto: as far as errors at sampled points grow by a twentieth at most (with --masks a quarter), auto:SHARE: by that share "
+		 "(default: not)"}};
 }
 
 std::vector<OptionRow> dropRows(DropSettings& drop, bool& no_drop)
@@ -154,6 +152,9 @@ void declare(CLI::App& app, VolumeOptions& options)
 					  "Radius of the ray-traced reference with linear falloff that they stand for, metres (default: distance / "
 					  "0.6, or fitted by "
 					  "--compensate)"},
+					 {"--masks", takesFlag(settings.masks),
+					  "For masks of directions (aov-mask): rays of the distance itself, no curve, and --detail auto judges masks",
+					  excludes("--ray-distance or --compensate")},
 					 partsRow("--occluders", options.occluders,
 							  "The only parts of the level that get volumes, chosen as by --ignore (default: all)"),
 					 partsRow("--receivers", options.receivers,
@@ -207,32 +208,6 @@ void settle(VolumeOptions& options)
 	}
 }
 
-// Seconds of each step, a line on stderr where that is a terminal.
-class Times
-{
-public:
-	void step(const char* name)
-	{
-		const auto now = std::chrono::steady_clock::now();
-		char text[64];
-		std::snprintf(text, sizeof text, "%s%s %.2f s", m_line.empty() ? "" : ", ", name,
-					  std::chrono::duration<double>(now - m_last).count());
-		m_line += text;
-		m_last = now;
-	}
-	void say() const
-	{
-		if (isTerminal())
-		{
-			std::fprintf(stderr, "\r\033[K%s\n", m_line.c_str());
-		}
-	}
-
-private:
-	std::chrono::steady_clock::time_point m_last = std::chrono::steady_clock::now();
-	std::string m_line;
-};
-
 // Without them every share would do all of the work.
 void checkShared(const VolumeSettings& settings)
 {
@@ -255,11 +230,9 @@ void run(VolumeOptions& options, VerbProgress& progress)
 	checkOutputs(options.outputs, kVolumeFormats, {options.level.level});
 	VolumeSettings& settings = options.settings;
 	const RunSettings how = progress.start("volumes", options.outputs.threads, options.outputs.progress);
-	Times times;
 	const std::shared_ptr<const LoadedLevel> shared = levelOf(options.level.level, options.level.load, how);
 	const LoadedLevel& loaded = *shared;
 	checkRead(options.outputs, loaded.level.files);
-	times.step("level");
 	addInputs(loaded.level.files, how);
 	const std::vector<uint8_t> occluding = chosenTriangles(loaded.level, options.occluders, "occluders");
 	std::optional<LevelPart> part;
@@ -273,17 +246,14 @@ void run(VolumeOptions& options, VerbProgress& progress)
 	{
 		return;
 	}
-	times.step("volumes");
 	clusterVolumes(built.set, {}, how);
 	const VolumeFile file = volumeGlb(built.set, options.file, loaded.level.name, "nook " NOOK_VERSION, how);
-	times.step("file");
 	std::optional<VerifyResult> quantised;
 	if (built.verified)
 	{
 		const Tracer tracer(loaded.level, how);
 		const VolumeSet rounded = unpacked(file.packed, built.set);
 		quantised = verifyVolumes(built.set, rounded, sampleReceivers(tracer, settings.distance_m, *settings.verify, how), how);
-		times.step("16-bit numbers");
 	}
 
 	const Occluders& occluders = built.set.occluders;
@@ -297,10 +267,6 @@ void run(VolumeOptions& options, VerbProgress& progress)
 	writeOutputs(
 		options.outputs, [&](const std::string&) { return file.bytes; }, facts.json(), loaded.level.files,
 		options.outputs.json.empty() ? facts.lines() : "");
-	if (t_call == nullptr)
-	{
-		times.say();
-	}
 	for (const std::string& warning : built.warnings)
 	{
 		warn(warning);

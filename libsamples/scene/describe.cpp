@@ -208,8 +208,9 @@ void addAdvice(const Level& level, int threads, Facts& facts)
 	facts.text("suits", suits);
 	facts.text("why", why);
 	facts.line("suits: " + suits + ", since " + why);
-	facts.line(advice.asset == Asset::volumes ? "  nook volumes makes the file, --method aov-mask draws it"
-											  : "  nook bake makes the file");
+	facts.line(advice.asset == Asset::volumes
+				   ? "  nook volumes --masks makes the file, --method aov-mask draws it"
+				   : "  nook bake makes the file; nook volumes --masks --detail auto errs less and takes more bytes");
 }
 
 // The values of a channel, over all pixels.

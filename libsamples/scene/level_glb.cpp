@@ -2,6 +2,7 @@
 // This work is based on: Khronos Group, "glTF 2.0 Specification", ISO/IEC 12113:2022.
 #include "scene/level_glb.h"
 
+#include "core/decimal.h"
 #include "core/base64.h"
 #include "core/file.h"
 #include "core/image.h"
@@ -75,7 +76,11 @@ public:
 		const glm::vec3 colour = m_with_pictures && !material.picture.empty() ? glm::vec3(1.0F) : material.colour;
 		if (!opaque || colour != glm::vec3(1.0F))
 		{
-			pbr["baseColorFactor"] = {colour.x, colour.y, colour.z, opaque ? 1.0 : material.alpha};
+			const auto decimal = [](float value) // 0.8, not 0.800000011920929
+			{
+				return numberFrom<double>(shortestDecimal(value)).value();
+			};
+			pbr["baseColorFactor"] = {decimal(colour.x), decimal(colour.y), decimal(colour.z), opaque ? 1.0 : material.alpha};
 		}
 		if (hasPicture(index))
 		{

@@ -74,6 +74,7 @@ std::unique_ptr<LevelAsset> makeVolumes(const AssetSource& source, const AssetSe
 	VolumeSettings settings;
 	settings.distance_m = volumeDistance(asset.volumes, source.radius_m);
 	settings.ray_distance_m = source.radius_m;
+	settings.masks = asset.volumes == VolumeRecipe::masks;
 	settings.occluders.distance_m = settings.distance_m;
 	if (asset.volumes == VolumeRecipe::triangles)
 	{
@@ -163,7 +164,7 @@ std::vector<AssetCandidate> maskCandidates(GridSize size)
 std::string volumeCommand(const AssetSettings& settings, const AssetLevel& level)
 {
 	return "nook volumes " + level.words + " --distance " + numberText(volumeDistance(settings.volumes, level.radius_m)) +
-		   " --ray-distance " + numberText(level.radius_m) +
+		   (settings.volumes == VolumeRecipe::masks ? " --masks" : " --ray-distance " + numberText(level.radius_m)) +
 		   (settings.volumes == VolumeRecipe::built ? " --trim " + numberText(kBuiltTrim) + " --compensate" : "");
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kinds of assets that are made of a level before it is drawn, one row each. `nook shade`, `nook info`, the reports and `nook
-// tune` read the rows and name no kind. A new kind is a row here, its code and a test.
+// The kinds of assets that are made of a level before it is drawn, one row each. The reports and `nook tune` read
+// the rows and name no kind. A new kind is a row here, its code and a test.
 #pragma once
 
 #include "emit/module.h"
@@ -113,10 +113,6 @@ struct AssetKind
 	std::unique_ptr<LevelAsset> (*make)(const AssetSource&, const AssetSettings&, const RunSettings&) = nullptr;
 	std::string (*command)(const AssetSettings&, const AssetLevel&) = nullptr; // makes the file, without -o
 	void (*emit)(AssetEmission&) = nullptr;                                    // for `nook tune`; calls add_levels
-
-	// Files.
-	std::unique_ptr<LevelAsset> (*read)(const std::string& path, const RunSettings& run) = nullptr; // null: by options of their own
-	std::string (*describe)(const std::string& path) = nullptr; // for `nook info`; empty for other files; null: known as a level
 };
 
 // Volumes and masks, bakes, then others.

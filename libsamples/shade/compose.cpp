@@ -229,12 +229,6 @@ template <class Value> std::vector<Value> inside(const GBuffer& gbuffer, const s
 Composed compose(const ComposeSettings& settings, const GBuffer& gbuffer, const RunSettings& run)
 {
 	Composed composed;
-	if (settings.asset != nullptr)
-	{
-		const auto asset = settings.asset->read(settings.asset_path, run);
-		composed.shaded = asset->draw(gbuffer, {}, settings.gl, run, settings.drawing).shaded;
-		return composed;
-	}
 	const bool has_volumes = !settings.volumes.empty();
 	const Static fixed = readStatic(settings, gbuffer, run);
 	if (fixed.baked)

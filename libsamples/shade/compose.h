@@ -23,8 +23,6 @@ struct ComposeSettings
 	AovSettings aov;
 	std::string bake;                 // a file of nook bake; empty: none
 	std::string fixed;                // a G-buffer of what does not move; empty: none
-	const AssetKind* asset = nullptr; // drawn by itself and by its row; null: none
-	std::string asset_path;
 	bool gl = false;
 	DrawSettings drawing;
 };

@@ -2,9 +2,12 @@
 #include "volume/build.h"
 
 #include "core/error.h"
+#include "core/lists.h"
+#include "core/parallel.h"
 #include "core/text.h"
 #include "core/work_units.h"
 #include "scene/reference.h"
+#include "volume/evaluate.h"
 
 #include <glm/geometric.hpp>
 
@@ -50,6 +53,10 @@ void visit(Archive& archive, TrimCounts& counts)
 
 namespace
 {
+
+constexpr double kMaskMore = 0.25;   // increase of the masks' error that --detail auto allows
+constexpr double kMaskError = 0.015; // and an error that it allows in any case: about that of all polygons (levels.md)
+constexpr int kMaskDirections = 128; // as aov-mask by default
 
 bool dropsAnything(const DropSettings& drop)
 {
@@ -205,10 +212,11 @@ void chooseDetailOf(BuiltVolumes& built, const Level& level, const Tracer& trace
 					OccluderSettings& occluding, const RunSettings& run)
 {
 	DetailSettings choosing;
-	choosing.more = *settings.detail_more;
-	choosing.ray_distance_m = settings.ray_distance_m;
+	choosing.more = *settings.detail_more > 0.0 ? *settings.detail_more : settings.masks ? kMaskMore : choosing.more;
+	choosing.ray_distance_m = settings.masks ? settings.distance_m : settings.ray_distance_m;
 	choosing.exact_bounds = settings.exact_bounds;
 	choosing.fitted = settings.compensate.has_value();
+	choosing.masks = settings.masks;
 	runOnce(
 		"detail", [&] { built.detail = chooseDetail(level, tracer, occluding, choosing, withoutUnits(run)); },
 		[&](Archive& archive) { archive(built.detail); }, run);
@@ -287,13 +295,13 @@ class Trials
 public:
 	Trials(const Level& level, const Tracer& tracer, const OccluderSettings& settings, const DetailSettings& detail,
 		   const RunSettings& run)
-		: m_level(level), m_settings(settings), m_exact(detail.exact_bounds), m_run(run),
+		: m_level(level), m_settings(settings), m_exact(detail.exact_bounds), m_masks(detail.masks), m_run(run),
 		  m_points(sampleReceivers(tracer, settings.distance_m, detail.receivers, run))
 	{
 		ReferenceSettings reference;
 		reference.falloff = Falloff::linear;
 		reference.radius_m = detail.ray_distance_m > 0.0 ? detail.ray_distance_m : settings.distance_m / kPaperRayRatio;
-		reference.rays = detail.rays;
+		reference.rays = detail.masks ? 4 * detail.rays : detail.rays; // masks err less than the noise of few rays
 		for (const ReferenceValue& value : referenceAtPoints(tracer, m_points, reference, run))
 		{
 			m_occlusions.push_back(1.0 - value.visibility);
@@ -314,15 +322,35 @@ public:
 		set.distance_m = m_settings.distance_m;
 		set.exact_bounds = m_exact;
 		set.occluders = occludersOf(m_level, settings, m_run).occluders;
+		if (m_masks)
+		{
+			const double rmse = maskRmse(set);
+			return {share, set.occluders.polygons.size(), rmse, rmse};
+		}
 		const std::vector<double> sums = sumsAt(set, m_points, m_run);
 		return {share, set.occluders.polygons.size(), rmseOf(Compensation{}, sums, m_occlusions),
 				rmseOf(fitCurve(sums, m_occlusions), sums, m_occlusions)};
 	}
 
 private:
+	double maskRmse(const VolumeSet& set) const
+	{
+		const VolumeEvaluator evaluator(set, m_run);
+		std::vector<double> squares(m_points.size());
+		parallelFor(m_points.size(), m_run.threads,
+					[&](std::size_t i)
+					{
+						const ReferencePoint& point = m_points[i];
+						const double seen = evaluator.maskedVisibility(point.position, point.normal, kMaskDirections);
+						squares[i] = (1.0 - m_occlusions[i] - seen) * (1.0 - m_occlusions[i] - seen);
+					});
+		return std::sqrt(sumOver(squares) / static_cast<double>(squares.size()));
+	}
+
 	const Level& m_level;
 	const OccluderSettings& m_settings;
 	bool m_exact;
+	bool m_masks;
 	const RunSettings& m_run;
 	std::vector<ReferencePoint> m_points;
 	std::vector<double> m_occlusions;
@@ -383,7 +411,9 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& wanted, cons
 	{
 		trim(built, *tracer, *settings.trim, run);
 	}
-	set.ray_distance_m = settings.ray_distance_m > 0.0 ? settings.ray_distance_m : set.distance_m / kPaperRayRatio;
+	set.ray_distance_m = settings.ray_distance_m > 0.0 ? settings.ray_distance_m
+						 : settings.masks              ? set.distance_m
+													   : set.distance_m / kPaperRayRatio;
 	if (settings.compensate)
 	{
 		compensate(built, *tracer, settings, run);
@@ -423,8 +453,9 @@ DetailChoice chooseDetail(const Level& level, const Tracer& tracer, const Occlud
 		const DetailTrial trial = trials.at(kLadder[middle]);
 		choice.trials.push_back(trial);
 		const double fitted_more = detail.fitted ? detail.more : kShapeMore * detail.more;
-		const bool allowed = trial.fitted_rmse <= (1.0 + fitted_more) * whole.fitted_rmse &&
-							 (detail.fitted || trial.paper_rmse <= (1.0 + detail.more) * whole.paper_rmse);
+		const bool allowed = detail.masks ? trial.paper_rmse <= std::max((1.0 + detail.more) * whole.paper_rmse, kMaskError)
+										  : trial.fitted_rmse <= (1.0 + fitted_more) * whole.fitted_rmse &&
+												(detail.fitted || trial.paper_rmse <= (1.0 + detail.more) * whole.paper_rmse);
 		(allowed ? good : unknown) = allowed ? middle : middle + 1;
 		best = allowed ? trial : best;
 		progress.finishOne();

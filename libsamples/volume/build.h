@@ -33,6 +33,7 @@ struct DetailSettings
 	double ray_distance_m = 0.0; // radius of the reference with linear falloff; 0: the paper's δ / 0.6
 	bool exact_bounds = false;   // as for the final volumes
 	bool fitted = false;         // the volumes will get a fitted curve, whose error counts; else the paper's counts
+	bool masks = false;          // masks of directions count, which have no curve
 	int rays = 256;              // per point
 	ReceiverSettings receivers{4, 600, 2400, 0, 5}; // points where errors are measured
 };
@@ -41,7 +42,7 @@ struct DetailTrial
 {
 	double detail = 0.0;      // relative to δ
 	uint64_t polygons = 0;    // convex polygons before dropping any
-	double paper_rmse = 0.0;  // visibility error against rays with the paper's curve
+	double paper_rmse = 0.0;  // visibility error against rays with the paper's curve, or of masks
 	double fitted_rmse = 0.0; // with a curve fitted to these points
 };
 
@@ -54,7 +55,8 @@ struct DetailChoice
 
 // Finds, by bisection, the coarsest of a ladder of steps (0.08 and down by fourth roots of two) whose error with the volumes' curve
 // is at most `more` above that without simplification. With the paper's curve, the error with a fitted one may grow by at most
-// three times that. Deterministic for any thread count. `settings.detail` is ignored.
+// three times that. With masks, the error may be kMaskError in any case. Deterministic for any thread count. `settings.detail` is
+// ignored.
 DetailChoice chooseDetail(const Level& level, const Tracer& tracer, const OccluderSettings& settings, const DetailSettings& detail,
 						  const RunSettings& run);
 
@@ -63,9 +65,10 @@ struct VolumeSettings
 	double distance_m = 1.0;     // δ, > 0, finite
 	double ray_distance_m = 0.0; // radius of the equivalent reference with linear falloff; 0: the paper's δ / 0.6, or fitted
 	bool exact_bounds = false;
+	bool masks = false;                // drawn as masks of directions: no curve, rays of the distance itself
 	OccluderSettings occluders;        // its distance_m is ignored in favour of the one above
 	const Level* occluding = nullptr;  // the part of the level that gets volumes; null: all of it
-	std::optional<double> detail_more; // if set, chooses occluders.detail for at most this fraction more error
+	std::optional<double> detail_more; // if set, chooses occluders.detail for at most this fraction more error; 0: 0.05, masks 0.25
 	DropSettings drop;
 	std::optional<TrimSettings> trim;             // none: do not trim
 	std::optional<CompensateSettings> compensate; // none: the paper's curve

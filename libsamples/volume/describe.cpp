@@ -56,21 +56,6 @@ void addDetail(const DetailChoice& choice, Facts& to)
 		}
 	}
 	to.line(words);
-	// The paper's curve alone may stand against it: masks and fitted curves do with less.
-	const auto fewest = std::min_element(choice.trials.begin(), choice.trials.end(),
-										 [&](const DetailTrial& a, const DetailTrial& b)
-										 {
-											 const auto rank = [&](const DetailTrial& trial)
-											 {
-												 return std::pair(trial.fitted_rmse > choice.trials[0].fitted_rmse, trial.polygons);
-											 };
-											 return rank(a) < rank(b);
-										 });
-	if (fewest != choice.trials.end() && fewest->detail > choice.detail)
-	{
-		to.line("  with --compensate as little as " + roundedText(fewest->detail, 4) +
-				" of the distance: " + std::to_string(fewest->polygons) + " polygons, RMSE " + roundedText(fewest->fitted_rmse, 4));
-	}
 }
 
 void addDropped(const DropCounts& dropped, Facts& to)

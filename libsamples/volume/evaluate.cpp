@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -36,8 +37,13 @@ struct VolumeEvaluator::Data
 	std::vector<RTCBounds> boxes;
 	RTCDevice device = nullptr;
 	RTCScene scene = nullptr;
+	uint64_t number; // no other evaluator's
 
-	explicit Data(const VolumeSet& of) : set(of) {}
+	explicit Data(const VolumeSet& of) : set(of)
+	{
+		static std::atomic<uint64_t> count{0};
+		number = ++count;
+	}
 	Data(const Data&) = delete;
 	Data& operator=(const Data&) = delete;
 	~Data()
@@ -50,28 +56,39 @@ struct VolumeEvaluator::Data
 	void shape(std::size_t polygon);
 	void build(const RunSettings& run);
 	bool holds(const Occluder& polygon, glm::dvec3 front, glm::dvec3 position) const;
-	template <class Visit> uint32_t visit(glm::dvec3 position, glm::vec3 normal, double bias_m, const Visit& visit) const;
+	const std::vector<uint32_t>& candidatesAt(glm::vec3 at, float radius) const;
+	template <class Within, class Visit>
+	uint32_t visit(glm::dvec3 position, glm::vec3 normal, double bias_m, const Within& within, const Visit& visit) const;
+	template <class Use> uint32_t visitShares(glm::dvec3 position, glm::vec3 normal, double bias_m, const Use& use) const;
 };
 
 namespace
 {
 
+// Distances along the axes, not Euclidean.
+bool isNear(const RTCBounds& box, glm::vec3 at, float radius)
+{
+	return at.x >= box.lower_x - radius && at.x <= box.upper_x + radius && at.y >= box.lower_y - radius &&
+		   at.y <= box.upper_y + radius && at.z >= box.lower_z - radius && at.z <= box.upper_z + radius;
+}
+
+// Volumes near the last point of a thread, ascending. The next pixel is usually near it.
 struct Candidates
 {
-	const std::vector<RTCBounds>& boxes;
-	std::vector<uint32_t>& found;
+	uint64_t evaluator = 0;
+	const std::vector<RTCBounds>* boxes = nullptr;
+	glm::vec3 at{0.0F};
+	float radius = -1.0F;
+	std::vector<uint32_t> found;
 };
 
 // A leaf of the tree has several boxes, not all of which contain the point.
 bool collect(RTCPointQueryFunctionArguments* arguments)
 {
-	const auto& [boxes, found] = *static_cast<const Candidates*>(arguments->userPtr);
-	const RTCBounds& box = boxes[arguments->primID];
-	const RTCPointQuery& at = *arguments->query;
-	if (at.x >= box.lower_x - at.radius && at.x <= box.upper_x + at.radius && at.y >= box.lower_y - at.radius &&
-		at.y <= box.upper_y + at.radius && at.z >= box.lower_z - at.radius && at.z <= box.upper_z + at.radius)
+	Candidates& candidates = *static_cast<Candidates*>(arguments->userPtr);
+	if (isNear((*candidates.boxes)[arguments->primID], candidates.at, candidates.radius))
 	{
-		found.push_back(arguments->primID);
+		candidates.found.push_back(arguments->primID);
 	}
 	return false;
 }
@@ -220,68 +237,95 @@ bool VolumeEvaluator::Data::holds(const Occluder& polygon, glm::dvec3 front, glm
 	return true;
 }
 
-// Calls visit(polygon index, kernels, count, front, height, g) for all volumes that contain the point, in order; returns how many.
-template <class Visit>
-uint32_t VolumeEvaluator::Data::visit(glm::dvec3 position, glm::vec3 normal, double bias_m, const Visit& visit) const
+const std::vector<uint32_t>& VolumeEvaluator::Data::candidatesAt(glm::vec3 at, float radius) const
 {
-	thread_local std::vector<uint32_t> found;
-	found.clear();
-	RTCPointQueryContext context;
-	rtcInitPointQueryContext(&context);
+	thread_local Candidates candidates;
+	const glm::vec3 moved = glm::abs(at - candidates.at);
+	if (candidates.evaluator != number || std::max({moved.x, moved.y, moved.z}) + radius > candidates.radius)
+	{
+		// Tuned on builtin:suburb: a smaller radius has more queries, a larger one more candidates.
+		candidates = {number, &boxes, at, radius + 0.15F * static_cast<float>(set.distance_m), std::move(candidates.found)};
+		candidates.found.clear();
+		RTCPointQueryContext context;
+		rtcInitPointQueryContext(&context);
+		RTCPointQuery query{at.x, at.y, at.z, 0.0F, 1.7320509F * candidates.radius};
+		rtcPointQuery(scene, &query, &context, collect, &candidates);
+		sortIndices(candidates.found, set.occluders.polygons.size());
+	}
+	return candidates.found;
+}
+
+// Calls visit(index, kernels, front, height) for all volumes that contain the point, in order; returns how many. within() with the
+// same arguments says whether a point at that height has a falloff above 0.
+template <class Within, class Visit>
+uint32_t VolumeEvaluator::Data::visit(glm::dvec3 position, glm::vec3 normal, double bias_m, const Within& within,
+									  const Visit& visit) const
+{
 	const glm::vec3 at(position - centre);
 	const auto bias = static_cast<float>(std::max({bias_m, kVolumeBias * set.distance_m, set.plane_error_m}));
 	// A point that close behind the plane of one side may be lifted into the volume.
-	RTCPointQuery query{at.x, at.y, at.z, 0.0F, grown + bias};
-	Candidates candidates{boxes, found};
-	rtcPointQuery(scene, &query, &context, collect, &candidates);
-	sortIndices(found, set.occluders.polygons.size());
-
+	const float radius = grown + bias;
 	const auto reach = static_cast<float>(set.distance_m);
 	std::array<glm::vec3, kMaxOccluderCorners> corners;
 	volume_kernels::Kernels kernels;
 	uint32_t count = 0;
-	for (const uint32_t index : found)
+	for (const uint32_t index : candidatesAt(at, radius))
 	{
-		const Occluder& polygon = set.occluders.polygons[index];
-		const std::span<const glm::dvec3> of = set.occluders.cornersOf(polygon);
-		for (std::size_t i = 0; i < of.size(); ++i)
-		{
-			corners[i] = glm::vec3(of[i] - position);
-		}
-		kernels.corners = std::span(corners).first(of.size());
-		const auto size = static_cast<int>(of.size());
-		const glm::vec3 front = fronts[index];
-		const float lift =
-			kernels.nookLift(kernels.nookHeight(front), polygon.two_sided ? 1.0F : 0.0F, bias, glm::dot(normal, front));
-		for (std::size_t i = 0; lift != 0.0F && i < of.size(); ++i)
-		{
-			corners[i] -= lift * front;
-		}
-		const float height = kernels.nookHeight(front);
-		if (!kernels.nookReaches(height, polygon.two_sided ? 1.0F : 0.0F, reach * polygon.reach, bias))
+		if (!isNear(boxes[index], at, radius))
 		{
 			continue;
 		}
-		const float g = polygon.alpha * kernels.nookFalloff(size, front, std::fabs(height), reach, polygon.side_reach);
-		if (g > 0.0F && (clamped[index] == 0 || holds(polygon, glm::dvec3(front), position)))
+		const Occluder& polygon = set.occluders.polygons[index];
+		const std::span<const glm::dvec3> of = set.occluders.cornersOf(polygon);
+		const glm::vec3 front = fronts[index];
+		const float two_sided = polygon.two_sided ? 1.0F : 0.0F;
+		corners[0] = glm::vec3(of[0] - position);
+		kernels.corners = std::span(corners).first(of.size());
+		const float lift = kernels.nookLift(kernels.nookHeight(front), two_sided, bias, glm::dot(normal, front));
+		corners[0] -= lift * front;
+		const float height = kernels.nookHeight(front);
+		if (!kernels.nookReaches(height, two_sided, reach * polygon.reach, bias))
+		{
+			continue;
+		}
+		for (std::size_t i = 1; i < of.size(); ++i)
+		{
+			corners[i] = glm::vec3(of[i] - position) - lift * front;
+		}
+		if (within(index, kernels, front, height) && (clamped[index] == 0 || holds(polygon, glm::dvec3(front), position)))
 		{
 			count += 1;
-			visit(index, kernels, size, front, height, g);
+			visit(index, kernels, front, height);
 		}
 	}
 	return count;
 }
 
+// Calls use(polygon index, g · form factor) for all volumes that contain the point, in order; returns how many.
+template <class Use>
+uint32_t VolumeEvaluator::Data::visitShares(glm::dvec3 position, glm::vec3 normal, double bias_m, const Use& use) const
+{
+	float g = 0.0F;
+	const auto within = [&](uint32_t index, volume_kernels::Kernels& kernels, glm::vec3 front, float height)
+	{
+		const Occluder& polygon = set.occluders.polygons[index];
+		const auto count = static_cast<int>(kernels.corners.size());
+		g = polygon.alpha *
+			kernels.nookFalloff(count, front, std::fabs(height), static_cast<float>(set.distance_m), polygon.side_reach);
+		return g > 0.0F;
+	};
+	const auto share = [&](uint32_t index, volume_kernels::Kernels& kernels, glm::vec3, float height)
+	{
+		use(index, g * kernels.nookFormFactor(static_cast<int>(kernels.corners.size()), normal, height < 0.0F ? -1.0F : 1.0F));
+	};
+	return visit(position, normal, bias_m, within, share);
+}
+
 VolumeSum VolumeEvaluator::sum(glm::dvec3 position, glm::dvec3 normal, double bias_m) const
 {
 	VolumeSum sum;
-	const glm::vec3 n(normal);
-	sum.volumes = m_data->visit(position, n, bias_m,
-								[&](uint32_t, volume_kernels::Kernels& kernels, int count, glm::vec3, float height, float g)
-								{
-									const float share = g * kernels.nookFormFactor(count, n, height < 0.0F ? -1.0F : 1.0F);
-									sum.occlusion += static_cast<double>(share);
-								});
+	sum.volumes = m_data->visitShares(position, glm::vec3(normal), bias_m,
+									  [&](uint32_t, float share) { sum.occlusion += static_cast<double>(share); });
 	return sum;
 }
 
@@ -293,45 +337,222 @@ double VolumeEvaluator::occlusion(glm::dvec3 position, glm::dvec3 normal) const
 void VolumeEvaluator::shares(glm::dvec3 position, glm::dvec3 normal, std::vector<VolumeShare>& shares) const
 {
 	shares.clear();
-	const glm::vec3 n(normal);
-	m_data->visit(position, n, 0.0,
-				  [&](uint32_t polygon, volume_kernels::Kernels& kernels, int count, glm::vec3, float height, float g)
-				  {
-					  const float share = g * kernels.nookFormFactor(count, n, height < 0.0F ? -1.0F : 1.0F);
-					  if (share > 0.0F)
-					  {
-						  shares.push_back({polygon, share});
-					  }
-				  });
+	m_data->visitShares(position, glm::vec3(normal), 0.0,
+						[&](uint32_t polygon, float share)
+						{
+							if (share > 0.0F)
+							{
+								shares.push_back({polygon, share});
+							}
+						});
 }
+
+namespace
+{
+
+using MaskBits = std::array<glm::uvec4, kMostDirections / 128>;
+
+// Four edges at once, in vector types of GCC and Clang: for each the same operations as in the kernels.
+using Floats = float __attribute__((vector_size(16)));
+using Ints = int32_t __attribute__((vector_size(16)));
+using Doubles = double __attribute__((vector_size(32)));
+
+struct Vectors
+{
+	Floats x;
+	Floats y;
+	Floats z;
+};
+
+Floats dotOf(const Vectors& a, const Vectors& b)
+{
+	return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+Vectors allOf(glm::vec3 v)
+{
+	return {Floats{} + v.x, Floats{} + v.y, Floats{} + v.z};
+}
+
+// a.y * b.z - b.y * a.z. Products of 32-bit floats are exact in 64 bits, as the kernel's split ones nearly are.
+Floats exactProducts(Floats ay, Floats bz, Floats by, Floats az)
+{
+	const Doubles left = __builtin_convertvector(ay, Doubles) * __builtin_convertvector(bz, Doubles);
+	return __builtin_convertvector(left - __builtin_convertvector(by, Doubles) * __builtin_convertvector(az, Doubles), Floats);
+}
+
+Floats magnitudeOf(Floats v)
+{
+	return v < 0.0F ? -v : v;
+}
+
+// A receiver of masks. Its functions return what those of mask.glsl and volume.glsl do, but compute the frame once per receiver, a
+// length only for edges that may be too far, and only rays that no edge has ruled out.
+class MaskReceiver
+{
+public:
+	MaskReceiver(glm::vec3 normal, const MaskTables& tables, float reach)
+		: m_normal(normal), m_x(m_kernels.nookTangent(normal, 0)), m_y(m_kernels.nookTangent(normal, 1)), m_tables(tables),
+		  m_fours(static_cast<int>(tables.rays.size() / 128)), m_reach(reach)
+	{
+	}
+
+	// nookFalloff() > 0. Keeps the corners for cover().
+	bool isWithin(std::span<const glm::vec3> corners, glm::vec3 front, float height, float share)
+	{
+		const float scale = 1.0F / m_reach;
+		if (!(1.0F - std::fabs(height) * scale > 0.0F))
+		{
+			return false;
+		}
+		m_blocks = (corners.size() + 3) / 4;
+		for (std::size_t i = 0; i < 4 * m_blocks; ++i)
+		{
+			const std::size_t edge = std::min(i, corners.size() - 1); // again, where there are fewer
+			set(m_from[i / 4], i % 4, corners[edge > 0 ? edge - 1 : corners.size() - 1]);
+			set(m_to[i / 4], i % 4, corners[edge]);
+		}
+		const float limit = share * m_reach;
+		const Vectors normal = allOf(front);
+		for (std::size_t block = 0; block < m_blocks; ++block)
+		{
+			const Vectors& a = m_from[block];
+			const Vectors& b = m_to[block];
+			const Vectors along{b.x - a.x, b.y - a.y, b.z - a.z};
+			const Vectors inward{normal.y * along.z - along.y * normal.z, normal.z * along.x - along.z * normal.x,
+								 normal.x * along.y - along.x * normal.y};
+			const Floats outside = dotOf(a, inward);
+			const Ints far = (outside > 0.0F) & (outside * outside > 0.99F * limit * limit * dotOf(inward, inward));
+			for (std::size_t i = 0; (far[0] | far[1] | far[2] | far[3]) != 0 && i < 4; ++i)
+			{
+				const float side = 1.0F - outside[i] * (scale * m_kernels.nookUnit({inward.x[i], inward.y[i], inward.z[i]}));
+				if (far[i] != 0 && !(side > 0.0F && side >= 1.0F - share))
+				{
+					return false;
+				}
+			}
+		}
+		return true;
+	}
+
+	// Removes the bits that nookMaskBits() has for the polygon of isWithin().
+	void cover(glm::vec3 front, float height, const Occluder& polygon, MaskBits& open)
+	{
+		const float side = height < 0.0F ? -1.0F : 1.0F;
+		const float least = std::fabs(height) / m_reach;
+		const glm::vec3 down = glm::vec3(glm::dot(front, m_x), glm::dot(front, m_y), glm::dot(front, m_normal)) * -side;
+		if (down.z < 0.0F && least * least > down.x * down.x + down.y * down.y + 1e-3F)
+		{
+			return; // no ray of the hemisphere reaches the plane
+		}
+		MaskBits bits = open;
+		for (std::size_t block = 0; block < m_blocks; ++block)
+		{
+			if (!cutByEdges(m_from[block], m_to[block], side, bits))
+			{
+				return;
+			}
+		}
+		const float shift = m_kernels.nookShift(static_cast<int>(polygon.first_corner));
+		for (int word = 0; word < 4 * m_fours; ++word)
+		{
+			uint32_t& left = open[static_cast<std::size_t>(word / 4)][word % 4];
+			uint32_t asked = bits[static_cast<std::size_t>(word / 4)][word % 4];
+			if (asked != 0 && polygon.alpha < 1.0F)
+			{
+				asked &= m_kernels.nookMaskShare(word, polygon.alpha, shift);
+			}
+			for (; asked != 0; asked &= asked - 1)
+			{
+				const int i = std::countr_zero(asked);
+				const glm::vec3& ray = m_tables.rays[static_cast<std::size_t>(32 * word + i)];
+				left &= ~(uint32_t{glm::dot(ray, down) > least} << i);
+			}
+		}
+	}
+
+private:
+	static void set(Vectors& to, std::size_t i, glm::vec3 v)
+	{
+		to.x[i] = v.x;
+		to.y[i] = v.y;
+		to.z[i] = v.z;
+	}
+
+	// nookInsideEdge() of nookInward(). Returns false if no bit remains.
+	bool cutByEdges(const Vectors& from, const Vectors& to, float side, MaskBits& bits)
+	{
+		const Vectors across{exactProducts(to.y, from.z, from.y, to.z), exactProducts(to.z, from.x, from.z, to.x),
+							 exactProducts(to.x, from.y, from.x, to.y)};
+		const Vectors inward{dotOf(across, allOf(m_x)) * side, dotOf(across, allOf(m_y)) * side,
+							 dotOf(across, allOf(m_normal)) * side};
+		const Floats size = magnitudeOf(inward.x) + magnitudeOf(inward.y) + magnitudeOf(inward.z);
+		const Floats sign = inward.z != 0.0F ? inward.z : inward.y != 0.0F ? inward.y : inward.x;
+		const int texels = m_kernels.nookHalfSpaces();
+		const float half_side = 0.5F * static_cast<float>(texels);
+		const Floats positive = half_side / (size > 1e-37F ? size : Floats{} + 1e-37F);
+		const Floats scale = sign < 0.0F ? -positive : positive;
+		const Ints x = __builtin_convertvector(half_side + scale * (inward.x + inward.y), Ints);
+		const Ints y = __builtin_convertvector(half_side + scale * (inward.x - inward.y), Ints);
+		for (std::size_t i = 0; i < 4; ++i)
+		{
+			if (!(size[i] > 0.0F))
+			{
+				continue;
+			}
+			const glm::uvec4 other(sign[i] < 0.0F ? ~0U : 0U);
+			const int texel = std::min(y[i], texels - 1) * texels + std::min(x[i], texels - 1);
+			uint32_t any = 0;
+			for (int four = 0; four < m_fours; ++four)
+			{
+				glm::uvec4& cut = bits[static_cast<std::size_t>(four)];
+				cut &= m_tables.half_spaces[static_cast<std::size_t>(four * texels * texels + texel)] ^ other;
+				any |= cut.x | cut.y | cut.z | cut.w;
+			}
+			if (any == 0)
+			{
+				return false;
+			}
+		}
+		return true;
+	}
+
+	volume_kernels::Kernels m_kernels;
+	glm::vec3 m_normal;
+	glm::vec3 m_x;
+	glm::vec3 m_y;
+	const MaskTables& m_tables;
+	int m_fours;
+	float m_reach;
+	std::array<Vectors, kMaxOccluderCorners / 4> m_from;
+	std::array<Vectors, kMaxOccluderCorners / 4> m_to;
+	std::size_t m_blocks = 0;
+};
+
+} // namespace
 
 VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, int directions, double bias_m) const
 {
 	const MaskTables& tables = maskTablesOf(directions);
-	const auto fours = static_cast<int>(tables.rays.size() / 128);
-	std::array<glm::uvec4, kMostDirections / 128> open;
+	MaskBits open;
 	open.fill(glm::uvec4(~0U));
-	const glm::vec3 n(normal);
 	const auto reach = static_cast<float>(m_data->set.distance_m);
+	MaskReceiver receiver(glm::vec3(normal), tables, reach);
 	VolumeMask mask;
-	mask.volumes =
-		m_data->visit(position, n, bias_m,
-					  [&](uint32_t polygon, volume_kernels::Kernels& kernels, int count, glm::vec3 front, float height, float)
-					  {
-						  kernels.rays = tables.rays;
-						  kernels.half_spaces = tables.half_spaces;
-						  const Occluder& occluder = m_data->set.occluders.polygons[polygon];
-						  const auto number = static_cast<int>(occluder.first_corner);
-						  for (int four = 0; four < fours; ++four)
-						  {
-							  glm::uvec4& asked = open[static_cast<std::size_t>(four)];
-							  asked &= ~kernels.nookMaskBits(count, four, n, front, height, occluder.alpha, number, reach, asked);
-						  }
-					  });
-	int covered = 128 * fours;
-	for (int i = 0; i < fours; ++i)
+	const std::vector<Occluder>& polygons = m_data->set.occluders.polygons;
+	const auto within = [&](uint32_t index, volume_kernels::Kernels& kernels, glm::vec3 front, float height)
 	{
-		const glm::uvec4& words = open[static_cast<std::size_t>(i)];
+		return receiver.isWithin(kernels.corners, front, height, polygons[index].side_reach);
+	};
+	const auto cover = [&](uint32_t index, volume_kernels::Kernels&, glm::vec3 front, float height)
+	{
+		receiver.cover(front, height, polygons[index], open);
+	};
+	mask.volumes = m_data->visit(position, glm::vec3(normal), bias_m, within, cover);
+	int covered = static_cast<int>(tables.rays.size());
+	for (std::size_t i = 0; i < tables.rays.size() / 128; ++i)
+	{
+		const glm::uvec4& words = open[i];
 		covered -= std::popcount(words.x) + std::popcount(words.y) + std::popcount(words.z) + std::popcount(words.w);
 	}
 	mask.visibility = 1.0 - covered / static_cast<double>(directions);

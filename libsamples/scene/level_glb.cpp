@@ -2,8 +2,8 @@
 // This work is based on: Khronos Group, "glTF 2.0 Specification", ISO/IEC 12113:2022.
 #include "scene/level_glb.h"
 
-#include "core/decimal.h"
 #include "core/base64.h"
+#include "core/decimal.h"
 #include "core/file.h"
 #include "core/image.h"
 #include "core/json_text.h"

@@ -389,7 +389,7 @@ std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> rgb, 
 
 std::string rgbaPngBytes(int width_px, int height_px, std::span<const uint8_t> rgba)
 {
-	assert(rgba.size() == valuesOfPng(width_px, height_px, 4));
+	assert(rgba.size() == valuesOf(width_px, height_px, 4));
 	return fileOf({width_px, height_px, 4, 8, rgba.data()}, "sRGB", {});
 }
 

@@ -194,7 +194,7 @@ std::optional<Image> imageOf(const std::string& bytes, const std::string& name)
 	image.cropped = window != header.displayWindow();
 	constexpr std::array<const char*, Imf::NUM_COMPRESSION_METHODS> kCompressions{"none",  "rle", "zips", "zip",  "piz",
 																				  "pxr24", "b44", "b44a", "dwaa", "dwab"};
-	image.notes.push_back({"compression", kCompressions[static_cast<std::size_t>(header.compression())]});
+	image.notes.insert(image.notes.begin(), {"compression", kCompressions[static_cast<std::size_t>(header.compression())]});
 	const std::size_t count = image.channels.size();
 	image.values.resize(checkedTexels(image.width_px, image.height_px, static_cast<int>(count), kMaxTexels, name, "") * count);
 	const std::ptrdiff_t begin =

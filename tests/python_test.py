@@ -68,8 +68,8 @@ class Bytes(unittest.TestCase):
                        'const char *nook_error(void) { return "another version"; }\n')
         for flags, words in (([], "another version"), (["-Dnook_error=nook_other"], "found no function nook_error")):
             subprocess.run(["cc", "-shared", "-fPIC", *flags, source, "-o", library], check=True)
-            done = subprocess.run([sys.executable, "-c", "import nook"], env=dict(os.environ, NOOK_LIBRARY=library), stderr=subprocess.PIPE,
-                                  text=True)
+            found = dict(os.environ, NOOK_LIBRARY=library, PYTHONPATH=os.path.dirname(os.path.dirname(nook.__file__)))
+            done = subprocess.run([sys.executable, "-c", "import nook"], env=found, stderr=subprocess.PIPE, text=True)
             self.assertIn("ImportError", done.stderr)
             self.assertIn(words, done.stderr)
 

@@ -87,7 +87,7 @@ cp said webgl_said
 (
 	cd "$folder/app" || exit 1
 	page_path=webgpu.html
-	page_options='--option --enable-unsafe-webgpu --option --use-webgpu-adapter=swiftshader --option --disable-gpu-watchdog' # a busy machine is slow
+	page_options='--option --enable-unsafe-webgpu --option --use-webgpu-adapter=swiftshader'
 	page_said "the page of WebGPU" "$tools/vite" preview --outDir "$folder/vite" --port 0
 )
 checks=$((checks + 1))
@@ -98,7 +98,8 @@ node - said <<-'JS' >log 2>&1 || problem "WebGPU: $(head -c 600 log)"
 	const { deepStrictEqual } = require('node:assert');
 	const most = 2 / 255, half = [0.03, 0.002], exact = [1e-3, 0];
 	const bounds = { low: [most, 0], medium: [most, 0], high: [most, 0], lowHalf: half, mediumHalf: half, highHalf: half, colours: [most, 0], tint: [most, 0],
-		radius: [0.02, 0.001], sky: [most, 0], orthographic: [0.05, 0.005], reversed: [0.1, 0.01], changed: exact, resized: exact, transparent: [0.01, 0.001], darkened: [1, 1] };
+		radius: [0.02, 0.001], sky: [most, 0], orthographic: [0.05, 0.005], reversed: [0.1, 0.01], changed: exact, resized: exact, empty: exact, filled: exact, started: exact,
+		both: [0.001, 0], infinite: [0.01, 0.001], transparent: [0.01, 0.001], darkened: [1, 1] };
 	deepStrictEqual(Object.keys(differences).sort(), Object.keys(bounds).sort());
 	const wrong = Object.entries(bounds).filter(([name, bound]) => !differences[name].every((one, i) => one <= bound[i]));
 	if (wrong.length > 0) throw new Error(wrong.map(([name, bound]) => `${name}: found ${differences[name]}, expected at most ${bound}`).join('; '));
@@ -109,6 +110,7 @@ node - said <<-'JS' >log 2>&1 || problem "WebGPU: $(head -c 600 log)"
 		'TypeError: nookPass: found the option temporal, expected radius, quality, intensity, halfResolution, sky, tint, excludeTransparent',
 		'Error: nookPass: found a renderer without WebGPU, expected WebGPU; NookPass of nook-ao is for WebGL 2',
 		'Error: nookPass: found logarithmicDepthBuffer, expected a linear or reversed depth buffer',
+		'RangeError: nookPass: camera: projection: found infinity or NaN, expected 16 finite numbers',
 	]);
 JS
 mv webgl_said said

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The pass for WebGPURenderer: a node that draws a scene, and its visibility with the emitted WGSL on the renderer's own device.
-import { Color, DepthTexture, FloatType, HalfFloatType, NearestFilter, PassNode, RedFormat, RenderTarget } from 'three/webgpu';
+import { Color, DepthTexture, FloatType, HalfFloatType, NearestFilter, PassNode, RedFormat, RenderTarget, Vector2 } from 'three/webgpu';
 import { passTexture } from 'three/tsl';
 import { fill, recipe, tiles } from './nook_slices.js';
 import { wgslOf } from './nook_slices_wgsl.js';
@@ -127,6 +127,9 @@ class NookPassNode extends PassNode {
 		const { renderer } = frame;
 		if (renderer.backend.isWebGPUBackend !== true) throw new Error('nookPass: found a renderer without WebGPU, expected WebGPU; NookPass of nook-ao is for WebGL 2');
 		if (renderer.logarithmicDepthBuffer === true) throw new Error('nookPass: found logarithmicDepthBuffer, expected a linear or reversed depth buffer');
+		const { x, y } = renderer.getDrawingBufferSize(new Vector2());
+		if (x === 0 || y === 0) return;
+		if (!this.camera.projectionMatrix.elements.every(Number.isFinite)) throw new RangeError('nookPass: camera: projection: found infinity or NaN, expected 16 finite numbers');
 		// Opaque objects, their obscurance, and transparent objects over it.
 		let later = false;
 		if (this.excludeTransparent) this.scene.traverseVisible(({ material }) => { later ||= [material ?? []].flat().some(one => one.transparent); });
@@ -134,11 +137,9 @@ class NookPassNode extends PassNode {
 		if (later) this.transparent = false;
 		super.updateBefore(frame);
 		const { width, height } = this.renderTarget;
-		if (width > 0 && height > 0) {
-			this._output.setSize(width, height);
-			renderer.initRenderTarget(this._output);
-			this._draw(renderer, width, height);
-		}
+		this._output.setSize(width, height);
+		renderer.initRenderTarget(this._output);
+		this._draw(renderer, width, height);
 		if (later) {
 			const { background } = this.scene;
 			this.scene.background = null; // a colour would clear what was drawn

@@ -11,6 +11,14 @@ import { cameraOf, sceneOf } from './scene.js';
 // With an odd height, every second row from the top is every second from the bottom: both half resolutions take the same pixels.
 const width = 192, height = 109;
 const said = { refused: [] };
+const refusal = call => {
+	try {
+		call();
+		return 'nothing refused';
+	} catch (error) {
+		return `${error.name}: ${error.message}`;
+	}
+};
 const rendererOf = async options => {
 	const renderer = new GPU.WebGPURenderer(options);
 	renderer.setSize(width, height);
@@ -94,7 +102,7 @@ const reversed = await rendererOf({ reversedDepthBuffer: true });
 said.reversed = apart(base, await withGpu({}, { renderer: reversed }));
 reversed.dispose();
 
-// Options of a node that is in use, another size, two nodes that multiply.
+// Options of a node that is in use, other sizes.
 {
 	const node = nookPass(sceneOf().scene, perspective());
 	const pipeline = pipelineOf(three, node, true);
@@ -108,16 +116,37 @@ reversed.dispose();
 	three.setRenderTarget(null);
 	three.setSize(width, height);
 	said.resized = apart(base, await pictureOf(three, pipeline));
+	three.setSize(0, 0);
+	said.empty = apart(base, await pictureOf(three, pipeline)); // the last picture stays
+	three.setSize(width, height);
+	said.filled = apart(base, await pictureOf(three, pipeline));
 	node.dispose();
+	const second = nookPass(sceneOf().scene, perspective()), started = pipelineOf(three, second, true);
+	three.setSize(0, 0);
+	await pictureOf(three, started);
+	three.setSize(width, height);
+	said.started = apart(base, await pictureOf(three, started));
+	second.dispose();
 }
-const refusal = call => {
-	try {
-		call();
-		return 'nothing refused';
-	} catch (error) {
-		return `${error.name}: ${error.message}`;
-	}
-};
+// Two nodes in one pipeline, whose visibilities multiply.
+{
+	const { scene } = sceneOf(), camera = perspective();
+	const nodes = [0.5, 2].map(radius => nookPass(scene, camera, { radius }));
+	const [near, far] = nodes.map(node => node.getVisibilityNode());
+	const pipeline = new GPU.RenderPipeline(three, vec4(near.mul(far)));
+	pipeline.outputColorTransform = false;
+	const both = await pictureOf(three, pipeline), second = await withGpu({ radius: 2 });
+	said.both = apart((await withGpu({ radius: 0.5 })).map((one, i) => one * second[i]), both);
+	for (const node of nodes) node.dispose();
+}
+// A projection without a far plane that was set by hand; the renderer would compute it again for another coordinate system.
+{
+	const camera = perspective();
+	camera.coordinateSystem = THREE.WebGPUCoordinateSystem;
+	Object.assign(camera.projectionMatrix.elements, { 10: -1, 14: -0.1 });
+	camera.projectionMatrixInverse.copy(camera.projectionMatrix).invert();
+	said.infinite = apart(base, await withGpu({}, { camera }));
+}
 const { scene } = sceneOf();
 said.refused.push(refusal(() => nookPass(scene, perspective(), { radius: 0 })), refusal(() => nookPass(scene, perspective(), { temporal: true })));
 const other = new GPU.WebGPURenderer({ forceWebGL: true });
@@ -125,4 +154,7 @@ await other.init();
 said.refused.push(refusal(() => pipelineOf(other, nookPass(scene, perspective()), true).render()));
 const logarithmic = await rendererOf({ logarithmicDepthBuffer: true });
 said.refused.push(refusal(() => pipelineOf(logarithmic, nookPass(scene, perspective()), true).render()));
+// Last: after an error in a frame of a canvas, Chromium draws no more.
+const unlimited = cameraOf(new THREE.PerspectiveCamera(50, width / height, 0.1, Infinity));
+said.refused.push(refusal(() => pipelineOf(three, nookPass(scene, unlimited), true).render()));
 globalThis.said = said;

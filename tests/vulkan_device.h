@@ -390,21 +390,6 @@ inline std::string spirvOfStage(const std::string& text, const char* kind, const
 	return readFile(folder / "m.spv");
 }
 
-inline VkPipelineShaderStageCreateInfo vulkanStageOf(const VulkanDevice& vulkan, VkShaderStageFlagBits kind,
-													 const std::string& spirv)
-{
-	std::vector<uint32_t> words(spirv.size() / 4);
-	std::memcpy(words.data(), spirv.data(), spirv.size());
-	auto module_info = vulkanInfo<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-	module_info.codeSize = spirv.size();
-	module_info.pCode = words.data();
-	auto stage = vulkanInfo<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
-	stage.stage = kind;
-	stage.pName = "main";
-	requireVulkan(vkCreateShaderModule(vulkan.device(), &module_info, nullptr, &stage.module));
-	return stage;
-}
-
 struct VulkanTarget
 {
 	VkImageView view{};

@@ -21,8 +21,8 @@ struct ComposeSettings
 	std::optional<int> frame; // of a tile of several
 	std::string volumes;      // a file of nook volumes; empty: none
 	AovSettings aov;
-	std::string bake;                 // a file of nook bake; empty: none
-	std::string fixed;                // a G-buffer of what does not move; empty: none
+	std::string bake;  // a file of nook bake; empty: none
+	std::string fixed; // a G-buffer of what does not move; empty: none
 	bool gl = false;
 	DrawSettings drawing;
 };

@@ -56,7 +56,7 @@ function drawn(options = {}, { on = renderer, from = camera, frames = 1, before 
 	composer.dispose();
 	return result;
 }
-// The same with the composer of `postprocessing`. then: called after the first frame, before another.
+// Likewise with the composer of `postprocessing`. then: called after the first frame, before another.
 async function posted(optionsOf, { renderPass = true, then } = {}) {
 	const composer = new POST.EffectComposer(renderer, { frameBufferType: THREE.HalfFloatType });
 	composer.setSize(width, height);

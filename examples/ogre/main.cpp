@@ -102,9 +102,9 @@ int main()
 	camera.setFOVy(Ogre::Degree(62.0f));
 	camera.setAspectRatio(static_cast<Ogre::Real>(kWidth) / kHeight);
 	camera.setNearClipDistance(0.1f);
-	float projection[16]; // nook
+	float projection[16];                                                     // nook
 	std::copy_n(camera.getProjectionMatrix().transpose()[0], 16, projection); // nook: OGRE stores matrices row by row
-	fillBlock(projection, 1.5); // nook
+	fillBlock(projection, 1.5);                                               // nook
 	auto& compositor = *Ogre::CompositorManager::getSingleton().addCompositor(window.addViewport(&camera), "nook");
 	compositor.setEnabled(true);
 	root.renderOneFrame();

@@ -95,6 +95,10 @@ done
 # Paths from an exporter's machine are looked up next to the level; unread pictures may be anywhere.
 printf 'newmtl net\nmap_d C:\\nowhere\\mask.png\nmap_Kd ../kept_elsewhere/mask.png\n' >kept_level/c.mtl
 works "mask 'net'" info kept_level/c.obj
+fails 3 "kept_level/c.obj: picture of material 'net': found .*mask.png, which is outside the level.s folder, expected .*--allow-outside" \
+	bake kept_level/c.obj --radius 1 --rays 1 -o c.glb
+works '' bake kept_level/c.obj --radius 1 --rays 1 --allow-outside -o c.glb
+rm -f c.glb
 (cd kept_level && "$nook" info a.obj >../../stdout) || problem 'a level of this folder'
 
 # A depfile lists the files read, without duplicates, and no built-in names.

@@ -856,6 +856,10 @@ void run(BakeOptions& options, VerbProgress& progress)
 	const bool is_cell =
 		std::any_of(loaded.level.meshes.begin(), loaded.level.meshes.end(), [](const Mesh& mesh) { return mesh.around; });
 	const bool in_place = is_gltf && !is_cell && options.settings.max_error == 0.0;
+	if (!in_place)
+	{
+		checkPictures(loaded.level);
+	}
 	std::vector<glm::uvec3> triangles = in_place ? loaded.level.triangles : std::vector<glm::uvec3>();
 	const std::size_t turned = alignSheets(loaded.level, how.threads);
 	if (turned == 0)

@@ -64,6 +64,7 @@ struct Material
 	glm::vec3 colour{1.0F};                                // linear
 	std::string picture;                                   // replaces it: a file, or "data:…" if embedded; empty: none
 	std::array<Wrap, 2> wraps{Wrap::repeat, Wrap::repeat}; // of the picture, along u and v
+	bool picture_outside = false;                          // it lies outside the level's folder, and is not to be read
 
 	bool operator==(const Material&) const = default;
 };

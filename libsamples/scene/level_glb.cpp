@@ -536,7 +536,20 @@ std::string levelGlb(const Level& level, std::string_view generator)
 std::string levelGlb(const Level& level, std::string_view generator, std::vector<GltfPlace>& places)
 {
 	assert(!level.triangles.empty());
+	checkPictures(level);
 	return Writer(level, &places).bytes(generator);
+}
+
+void checkPictures(const Level& level)
+{
+	for (const Material& material : level.material_list)
+	{
+		if (material.mask >= 0 && material.picture_outside)
+		{
+			refuseInput(level.files.front() + ": picture of material '" + material.name + "'",
+						material.picture + ", which is outside the level's folder", "a file in it (allow-outside permits others)");
+		}
+	}
 }
 
 } // namespace nook

@@ -32,6 +32,9 @@ std::string levelGlb(const Level& level, std::string_view generator);
 // these colours. Appends where the level's vertices are in the file.
 std::string levelGlb(const Level& level, std::string_view generator, std::vector<GltfPlace>& places);
 
+// Throws Error (invalid_input) if that would read a picture which is not to be read.
+void checkPictures(const Level& level);
+
 // A binary glTF of a JSON text, a binary chunk and further chunks, with their heads. Throws Error (unsupported) above 1 GiB.
 std::string glbContainer(std::string text, std::string_view chunk, std::string_view others, const std::string& name);
 

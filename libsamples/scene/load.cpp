@@ -610,7 +610,7 @@ void visit(Archive& archive, Material& material)
 {
 	archive(material.name, material.alpha_mode, material.cutoff, material.alpha, material.mask, material.mean_alpha,
 			material.coverage, material.two_sided, material.extras, material.colour, material.picture, material.wraps[0],
-			material.wraps[1]);
+			material.wraps[1], material.picture_outside);
 }
 
 void visit(Archive& archive, Mask& mask)

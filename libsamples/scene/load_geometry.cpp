@@ -429,10 +429,8 @@ void finishMaterials(const LoadSettings& settings, LevelSource& source, Level& l
 	{
 		Material& material = level.material_list.emplace_back(from.material);
 		material.mask = from.mask;
-		if (from.mask >= 0 && !material.picture.starts_with("data:") && !material.picture.empty())
-		{
-			checkInside(source.files.front(), "picture of material '" + material.name + "'", material.picture, settings);
-		}
+		material.picture_outside = !settings.allow_outside && !material.picture.empty() && !material.picture.starts_with("data:") &&
+								   !isInside(source.files.front(), material.picture);
 		measureAlpha(material, from.mask < 0 ? AlphaCounts{} : counts[static_cast<std::size_t>(from.mask)]);
 	}
 	if (level.material_list.empty())

@@ -227,21 +227,18 @@ void addFindings(Diagnosis& diagnosis, const std::vector<Finding>& findings)
 // Restricts a level to files in its own folder. Otherwise a level from elsewhere could copy any file of this machine into a picture
 // or a message.
 
-void checkInside(const std::string& level_path, const std::string& reference, const std::string& path, const LoadSettings& settings)
+bool isInside(const std::string& level_path, const std::string& path)
 {
-	if (settings.allow_outside)
-	{
-		return;
-	}
 	std::error_code failed;
 	const std::filesystem::path parent = nativePath(level_path).parent_path();
 	const std::filesystem::path folder = std::filesystem::canonical(parent.empty() ? "." : parent, failed);
 	const std::filesystem::path file = std::filesystem::canonical(nativePath(path), failed);
-	if (failed)
-	{
-		return; // missing; reported elsewhere
-	}
-	if (std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first != folder.end())
+	return failed || std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
+}
+
+void checkInside(const std::string& level_path, const std::string& reference, const std::string& path, const LoadSettings& settings)
+{
+	if (!settings.allow_outside && !isInside(level_path, path)) // a missing file is reported elsewhere
 	{
 		refuseInput(level_path + ": " + reference, path + ", which is outside the level's folder",
 					"a file in it (allow-outside permits others)");

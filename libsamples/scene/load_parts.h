@@ -124,6 +124,7 @@ std::string besideLevel(const std::string& level_path, std::string name);
 // "level.obj: mtllib". Throws Error (invalid_input) unless `allow_outside`.
 void checkInside(const std::string& level_path, const std::string& reference, const std::string& path,
 				 const LoadSettings& settings);
+bool isInside(const std::string& level_path, const std::string& path); // or missing
 
 // Axes and unit of `settings` as one matrix from the file's coordinates (y up by default) to metres, y up.
 glm::dmat4 worldFromFile(const LoadSettings& settings);

@@ -32,4 +32,4 @@ for method in vo-line "vo-line --recipe paper" vo-point vo-area alchemy statvo s
 	label "$method"
 done
 # shellcheck disable=SC2086 # one file a word
-oiiotool $sheets --mosaic:pad=4 3x5 -o "$sheet"
+oiiotool --nosoftwareattrib $sheets --mosaic:pad=4 3x5 -o "$sheet"

@@ -24,4 +24,4 @@ for row in "$@"; do
 	rows+=("$folder/row${#rows[@]}.png")
 	oiiotool "${pictures[@]}" --mosaic:pad=2 6x1 -o "${rows[-1]}"
 done
-oiiotool "${rows[@]}" --mosaic:pad=2 "1x${#rows[@]}" --ch R -d uint8 -o "$sheet"
+oiiotool --nosoftwareattrib "${rows[@]}" --mosaic:pad=2 "1x${#rows[@]}" --ch R -d uint8 -o "$sheet"

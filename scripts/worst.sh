@@ -62,4 +62,4 @@ for i in $(seq 1 $methods); do
 	done
 done
 # shellcheck disable=SC2086 # one file a word
-oiiotool $sheets --mosaic:pad=4 $((methods + 1))x$((methods + 1)) -o "$sheet"
+oiiotool --nosoftwareattrib $sheets --mosaic:pad=4 $((methods + 1))x$((methods + 1)) -o "$sheet"

@@ -17,7 +17,7 @@ trap 'rm -rf "$scratch"' EXIT
 "$nook" gbuffer builtin:courtyard --camera main --size 640x360 -o "$scratch/g.exr"
 "$nook" reference builtin:courtyard --gbuffer "$scratch/g.exr" --radius 1.5 --rays 256 -o "$folder/courtyard_reference.png"
 "$(dirname "$0")/methods.sh" "$nook" builtin:courtyard 1 "$scratch/methods.png" --camera main
-oiiotool "$scratch/methods.png" --resize 1086x0 -o "$folder/methods.png"
+oiiotool --nosoftwareattrib "$scratch/methods.png" --resize 1086x0 -o "$folder/methods.png"
 for level in courtyard suburb; do
 	"$(dirname "$0")/worst.sh" "$nook" builtin:$level 1.5 "$folder/worst_$level.png"
 done
@@ -31,7 +31,7 @@ for page in engine_header level choose_a_method; do
 	mkdir "$scratch/$page"
 	"$guide" "$nook" "$page" "$scratch/$page" >"$scratch/out"
 done
-oiiotool "$scratch/engine_header/visibility.pgm" -o "$folder/guide_engine_header.png"
+oiiotool --nosoftwareattrib "$scratch/engine_header/visibility.pgm" -o "$folder/guide_engine_header.png"
 cp "$scratch/level/darkened.png" "$folder/guide_level.png"
 for method in rays vo-line slices statvo aov both; do
 	cp "$scratch/choose_a_method/$method.png" "$folder/choose_$method.png"

@@ -2,6 +2,7 @@
 #include "scene/reference.h"
 
 #include "core/decimal.h"
+#include "core/lists.h"
 #include "core/random.h"
 #include "core/round.h"
 #include "core/words.h"
@@ -190,7 +191,13 @@ glm::vec3 unitOf(glm::dvec3 v)
 	return glm::clamp(glm::vec3(glm::normalize(v)), -1.0F, 1.0F);
 }
 
-// The mean over batches; a batch of n samples has weight n^1.5, since the variance of a spiral's mean decreases about as n^−1.5.
+// Weight of a batch of n samples, n^1.5: the variance of a spiral's mean decreases about as n^−1.5.
+double weightOf(const SampleSet& set)
+{
+	return set.count() * std::sqrt(static_cast<double>(set.count()));
+}
+
+// The weighted mean over batches.
 ReferenceValue estimate(const Batches& batches, const ReferenceSettings& settings, Random& random, const Fill& fill)
 {
 	thread_local Scratch scratch;
@@ -205,7 +212,7 @@ ReferenceValue estimate(const Batches& batches, const ReferenceSettings& setting
 		scratch.resize(static_cast<std::size_t>(set.count()));
 		fill(set, random, scratch);
 		const double sum = std::accumulate(scratch.values.begin(), scratch.values.end(), 0.0);
-		const double weight = set.count() * std::sqrt(static_cast<double>(set.count()));
+		const double weight = weightOf(set);
 		weights += weight;
 		occlusion += weight * sum / set.count();
 		squared_error += weight * weight * set.squaredError(scratch.values);
@@ -338,6 +345,19 @@ void passValues(Archive& archive, std::span<const std::size_t> places, const Ref
 	}
 }
 
+// Units of points of lists.
+constexpr std::size_t kChunk = 256;
+
+std::vector<std::vector<std::size_t>> chunksOf(std::size_t count)
+{
+	std::vector<std::vector<std::size_t>> chunks((count + kChunk - 1) / kChunk);
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		chunks[i / kChunk].push_back(i);
+	}
+	return chunks;
+}
+
 // Computes the values at these indices, in units that a part may take; every index takes about as many rays.
 void computeValues(const std::vector<std::vector<std::size_t>>& units, const ReferenceSettings& settings,
 				   std::span<ReferenceValue> values, const std::function<void(std::size_t place)>& compute, const RunSettings& run)
@@ -415,13 +435,48 @@ std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::size_t 
 		Random random(settings.seed, i);
 		values[i] = atPoint(tracer, point(i), glm::mat3(1.0F), settings, batches, random);
 	};
-	constexpr std::size_t kChunk = 256;
-	std::vector<std::vector<std::size_t>> chunks((count + kChunk - 1) / kChunk);
-	for (std::size_t i = 0; i < count; ++i)
+	computeValues(chunksOf(count), settings, values, compute, run);
+	return values;
+}
+
+std::vector<std::vector<double>> visibilitiesWithin(const Tracer& tracer, std::span<const ReferencePoint> points,
+													const ReferenceSettings& settings, std::span<const double> radii_m,
+													const RunSettings& run)
+{
+	assert(settings.measure == ReferenceMeasure::obscurance && settings.falloff == Falloff::linear && settings.max_error == 0.0);
+	const SampleSet set(domainOf(settings.measure), settings.rays);
+	const auto reach_m = static_cast<float>(*std::max_element(radii_m.begin(), radii_m.end()));
+	std::vector<std::vector<double>> values(radii_m.size(), std::vector<double>(points.size()));
+	const auto compute = [&](std::size_t i)
 	{
-		chunks[i / kChunk].push_back(i);
-	}
-	computeValues(chunks, settings, values, compute, run);
+		thread_local Scratch scratch;
+		scratch.resize(static_cast<std::size_t>(set.count()));
+		Random random(settings.seed, i);
+		set.place(random, scratch.x, scratch.y, scratch.z);
+		turnTo(glm::vec3(points[i].normal), scratch);
+		tracer.distances(originOf(points[i], settings, tracer.error()), scratch.directions(), reach_m, scratch.values);
+		for (std::size_t r = 0; r < radii_m.size(); ++r)
+		{
+			const auto radius_m = static_cast<float>(radii_m[r]);
+			const double sum = sumOver(scratch.values, [&](float distance_m)
+									   { return static_cast<double>(falloffAt(distance_m, settings, radius_m, 0.0F)); });
+			values[r][i] = 1.0 - weightOf(set) * sum / set.count() / weightOf(set);
+		}
+	};
+	const std::vector<std::vector<std::size_t>> chunks = chunksOf(points.size());
+	runStage({"rays", chunks.size(), [&](std::size_t unit) { return static_cast<double>(chunks[unit].size()) * settings.rays; },
+			  [&](std::size_t unit) { std::for_each(chunks[unit].begin(), chunks[unit].end(), compute); },
+			  [&](std::size_t unit, Archive& archive)
+			  {
+				  for (std::vector<double>& of_radius : values)
+				  {
+					  for (const std::size_t i : chunks[unit])
+					  {
+						  archive(of_radius[i]);
+					  }
+				  }
+			  }},
+			 run);
 	return values;
 }
 

@@ -93,6 +93,12 @@ std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::size_t 
 											  const std::function<ReferencePoint(std::size_t i)>& point,
 											  const ReferenceSettings& settings, const RunSettings& run);
 
+// Visibilities within each radius instead of the settings', one list per radius, from the same rays: the nearest surface within
+// the greatest radius decides for all. For obscurance by linear falloff without max_error; the values of referenceAtPoints().
+std::vector<std::vector<double>> visibilitiesWithin(const Tracer& tracer, std::span<const ReferencePoint> points,
+													const ReferenceSettings& settings, std::span<const double> radii_m,
+													const RunSettings& run);
+
 // Every pixel; sky has visibility 1 and uses no rays. `tracer` may be null for MatterSource::depth and if parts have traced
 // everything; otherwise its level must be the G-buffer's. Requires normals. Throws like Projector.
 std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuffer& gbuffer, const ReferenceSettings& settings,

@@ -319,34 +319,40 @@ double varianceOf(std::span<const double> occlusions)
 	return squares / count - (sum / count) * (sum / count);
 }
 
-std::vector<double> referenceOf(const Tracer& tracer, std::span<const ReferencePoint> points, double radius_m,
-								const CompensateSettings& settings, const RunSettings& run)
+// Occlusions of the points, one list per radius.
+std::vector<std::vector<double>> occlusionsOf(const Tracer& tracer, std::span<const ReferencePoint> points,
+											  std::span<const double> radii_m, const CompensateSettings& settings,
+											  const RunSettings& run)
 {
 	ReferenceSettings reference;
 	reference.falloff = Falloff::linear;
-	reference.radius_m = radius_m;
 	reference.rays = settings.rays;
 	reference.seed = settings.seed;
-	return mapped(referenceAtPoints(tracer, points, reference, run),
-				  [](const ReferenceValue& value) { return 1.0 - value.visibility; });
+	std::vector<std::vector<double>> lists = visibilitiesWithin(tracer, points, reference, radii_m, run);
+	for (std::vector<double>& list : lists)
+	{
+		std::transform(list.begin(), list.end(), list.begin(), [](double visibility) { return 1.0 - visibility; });
+	}
+	return lists;
 }
 
-// Uses the same directions for all three points of a triple, so that their noise cancels in the differences.
+// Values at the first `corners` points of each triple, with the same directions for all, so that their noise cancels in the
+// differences.
 std::vector<TripleValues> valuesOf(const VolumeSet& volumes, const Tracer& tracer, const CompensateSettings& settings,
-								   std::span<const PictureTriple> triples, double radius_m, const RunSettings& run,
-								   ProgressCounter& progress)
+								   std::span<const PictureTriple> triples, std::size_t corners, double radius_m,
+								   const RunSettings& run, ProgressCounter& progress)
 {
 	std::vector<TripleValues> values(triples.size());
 	std::vector<ReferencePoint> points(triples.size());
-	for (std::size_t corner = 0; corner < 3; ++corner)
+	for (std::size_t corner = 0; corner < corners; ++corner)
 	{
 		for (std::size_t i = 0; i < triples.size(); ++i)
 		{
 			points[i] = triples[i].points[corner];
-			values[i].there = triples[i].there;
+			values[i].there[corner] = triples[i].there[corner];
 		}
 		const std::vector<double> sums = sumsAt(volumes, points, run);
-		const std::vector<double> occlusions = referenceOf(tracer, points, radius_m, settings, run);
+		const std::vector<double> occlusions = occlusionsOf(tracer, points, std::array{radius_m}, settings, run).front();
 		for (std::size_t i = 0; i < triples.size(); ++i)
 		{
 			values[i].sums[corner] = sums[i];
@@ -362,7 +368,7 @@ void checkCurve(const VolumeSet& volumes, const Tracer& tracer, const Compensate
 				ProgressCounter& progress, CompensateResult& result)
 {
 	const std::vector<PictureTriple> triples = pictureTriples(tracer, settings.kept_out, run);
-	const std::vector<TripleValues> values = valuesOf(volumes, tracer, settings, triples, result.ray_distance_m, run, progress);
+	const std::vector<TripleValues> values = valuesOf(volumes, tracer, settings, triples, 3, result.ray_distance_m, run, progress);
 	if (values.empty())
 	{
 		return;
@@ -573,13 +579,14 @@ CompensationRays compensationRays(const Tracer& tracer, double distance_m, const
 	rays.points = sampleReceivers(tracer, distance_m, receivers, run);
 	rays.ratios = settings.ray_distance_m > 0.0 ? std::vector<double>{distance_m / settings.ray_distance_m}
 												: std::vector<double>{0.5, 0.55, 0.6, 0.65, 0.7, 0.8, 0.9, 1.0};
-	for (std::size_t i = 0; i < rays.ratios.size() && !rays.points.empty(); ++i)
+	if (!rays.points.empty())
 	{
-		rays.occlusions.push_back(referenceOf(tracer, rays.points, distance_m / rays.ratios[i], settings, run));
-		if (progress != nullptr)
-		{
-			progress->finishOne();
-		}
+		const std::vector<double> radii_m = mapped(rays.ratios, [distance_m](double ratio) { return distance_m / ratio; });
+		rays.occlusions = occlusionsOf(tracer, rays.points, radii_m, settings, run);
+	}
+	if (progress != nullptr)
+	{
+		progress->finishOne();
 	}
 	return rays;
 }
@@ -587,8 +594,8 @@ CompensationRays compensationRays(const Tracer& tracer, double distance_m, const
 CompensateResult compensateVolumes(const VolumeSet& volumes, const Tracer& tracer, const CompensateSettings& settings,
 								   const RunSettings& run)
 {
-	const std::size_t ratios = settings.ray_distance_m > 0.0 ? 1 : 8;
-	ProgressCounter progress(run.progress, "compensation", ratios + 6); // number of ray-tracing passes
+	const std::size_t corners = settings.measure == CurveMeasure::rmse ? 1 : 3; // eq. 14 needs the neighbours
+	ProgressCounter progress(run.progress, "compensation", corners + 4);        // number of ray-tracing passes
 	const CompensationRays rays = compensationRays(tracer, volumes.distance_m, settings, run, &progress);
 	CompensateResult result;
 	result.receivers = rays.points.size();
@@ -615,7 +622,8 @@ CompensateResult compensateVolumes(const VolumeSet& volumes, const Tracer& trace
 	result.ray_distance_m = volumes.distance_m / result.trials[result.best].ratio;
 	const RunSettings whole = withoutUnits(run);
 	const std::vector<PictureTriple> triples = pictureTriples(tracer, settings.pictures, whole);
-	const std::vector<TripleValues> values = valuesOf(volumes, tracer, settings, triples, result.ray_distance_m, whole, progress);
+	const std::vector<TripleValues> values =
+		valuesOf(volumes, tracer, settings, triples, corners, result.ray_distance_m, whole, progress);
 	result.triples = values.size();
 	if (!values.empty())
 	{

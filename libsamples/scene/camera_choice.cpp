@@ -623,27 +623,9 @@ Verdict verdictOf(const Tracer& tracer, glm::dvec3 from, glm::dvec3 way, double 
 	return verdict;
 }
 
-} // namespace
-
-const LevelCamera& cameraNamed(const Level& level, std::string_view name)
+// Fewer views are the first of more.
+std::vector<LevelCamera> bestCameras(const Tracer& tracer, int count, const RunSettings& run)
 {
-	std::vector<std::string> names;
-	for (const LevelCamera& camera : level.cameras)
-	{
-		if (camera.name == name)
-		{
-			return camera;
-		}
-		names.push_back(camera.name);
-	}
-	refuseInput("camera", "'" + std::string(name) + "'",
-				names.empty() ? "auto:K, as " + level.name + " has no cameras" : joinedText(names, ", ") + " or auto:K",
-				ExitCode::usage);
-}
-
-std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const RunSettings& run)
-{
-	assert(count >= 1);
 	const Site site = siteOf(tracer.level());
 	std::vector<CameraCandidate> candidates;
 	std::vector<Sight> sights;
@@ -685,6 +667,40 @@ std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const Ru
 		}
 		camera.from_outside = candidates[i].outside;
 		cameras.push_back(camera);
+	}
+	return cameras;
+}
+
+} // namespace
+
+const LevelCamera& cameraNamed(const Level& level, std::string_view name)
+{
+	std::vector<std::string> names;
+	for (const LevelCamera& camera : level.cameras)
+	{
+		if (camera.name == name)
+		{
+			return camera;
+		}
+		names.push_back(camera.name);
+	}
+	refuseInput("camera", "'" + std::string(name) + "'",
+				names.empty() ? "auto:K, as " + level.name + " has no cameras" : joinedText(names, ", ") + " or auto:K",
+				ExitCode::usage);
+}
+
+std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const RunSettings& run)
+{
+	assert(count >= 1);
+	constexpr std::size_t kUsual = 12; // views that the stages of a verb need
+	const auto wanted = static_cast<std::size_t>(count);
+	CameraMemo& memo = tracer.cameraMemo();
+	std::vector<LevelCamera> cameras = memo.find(wanted);
+	if (cameras.empty())
+	{
+		cameras = bestCameras(tracer, static_cast<int>(std::max(wanted, kUsual)), run);
+		memo.keep(std::max(wanted, kUsual), cameras);
+		cameras.resize(std::min(wanted, cameras.size()));
 	}
 	if (cameras.empty())
 	{

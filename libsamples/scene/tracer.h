@@ -36,6 +36,7 @@ struct Directions
 };
 
 class Vicinity;
+class CameraMemo;
 
 // Tracer::error() for a level with these bounds.
 double errorOfRays(const Bounds& bounds);
@@ -78,9 +79,16 @@ public:
 	// sides[i] becomes 1 if the nearest surface shows its front, −1 if its back, 0 if there is none or it is masked.
 	void sides(glm::dvec3 origin, const Directions& directions, std::span<int8_t> sides) const;
 
+	// For chooseCameras(): the views chosen so far.
+	CameraMemo& cameraMemo() const
+	{
+		return *m_cameras;
+	}
+
 private:
 	struct Data;
 	std::unique_ptr<Data> m_data;
+	std::shared_ptr<CameraMemo> m_cameras;
 };
 
 // The region that rays of a given reach from a set of points can enter. Triangles elsewhere need no tree.

@@ -6,6 +6,7 @@
 #include "core/round.h"
 #include "core/text.h"
 #include "core/words.h"
+#include "scene/camera_choice.h"
 #include "scene/ray_triangle.h"
 
 #include <algorithm>
@@ -213,7 +214,7 @@ void Tracer::Data::attach(tracing::Part& part, unsigned id)
 }
 
 Tracer::Tracer(const Level& level, const RunSettings& run, const Vicinity* near, std::span<const uint8_t> occluders)
-	: m_data(std::make_unique<Data>(level))
+	: m_data(std::make_unique<Data>(level)), m_cameras(std::make_shared<CameraMemo>())
 {
 	assert(!level.triangles.empty() && run.threads >= 1 && (occluders.empty() || occluders.size() == level.triangles.size()));
 	const ProgressCounter stage(run.progress, "tree");

@@ -5,8 +5,8 @@ import {
 	UnsignedByteType, UnsignedShortType, Vector2, WebGLRenderTarget,
 } from 'three';
 import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
-import { blockBytes, fill, glslOf, recipe, tiles } from './nook_slices.js';
-import { defineOptions, rows } from './options.js';
+import { glslOf, tiles } from './nook_slices.js';
+import { blockOf, defineOptions, rows } from './options.js';
 
 const vertexShader = 'in vec3 position;\nvoid main() { gl_Position = vec4(position.xy, 0.5, 1.0); }'; // z is in front of a cleared buffer, reversed or not
 
@@ -21,7 +21,7 @@ export function screenMaterial(fragmentShader, uniforms, state = {}) {
 export const targetOf = (type, format = RGBAFormat, options = {}) =>
 	new WebGLRenderTarget(1, 1, { type, format, depthBuffer: false, minFilter: NearestFilter, magFilter: NearestFilter, ...options });
 
-const bitsOf = { [FloatType]: 32, [UnsignedShortType]: 16 }; // of a depth texture's type; others have 24
+const bitsOf = { [FloatType]: 32, [UnsignedShortType]: 16 }; // of types of depth textures; others have 24
 
 /** Returns whether a renderer can draw now, which it cannot while its context is lost. Throws where it never can. */
 export function isReady(renderer, owner) {
@@ -38,7 +38,7 @@ export class NookAO {
 	constructor(camera, width, height, options = {}) {
 		defineOptions(this, 'NookAO', rows, options);
 		this.camera = camera;
-		this._block = new Uniform(new Float32Array(blockBytes / 4));
+		this._block = new Uniform(new Float32Array(48));
 		this._group = new UniformsGroup().setName('nook_block').add(this._block);
 		this._quad = new FullScreenQuad();
 		this._frame = 0;
@@ -130,17 +130,9 @@ export class NookAO {
 
 	_fill(logarithmic, reversed, bits) {
 		const { x: width, y: height } = this._size;
-		const { radius, slice_thickness, strength, power } = recipe;
-		let bytes;
-		try {
-			bytes = fill(this.camera.projectionMatrix.elements, {
-				width, height, radius: radius * this.radius, slice_thickness, strength, power: power * this.intensity, device_depth: !logarithmic,
-				zero_to_one: reversed, depth_bits: bits, frame: this.temporal ? this._frame++ & 1048575 : 0,
-			});
-		} catch (error) {
-			throw new RangeError(`NookAO: camera: ${error.message}`);
-		}
-		this._block.value = new Float32Array(bytes);
+		this._block.value = blockOf('NookAO', this, this.camera, {
+			width, height, device_depth: !logarithmic, zero_to_one: reversed, depth_bits: bits, frame: this.temporal ? this._frame++ & 1048575 : 0,
+		});
 	}
 
 	// Passes and targets for the current settings.
@@ -172,7 +164,7 @@ export class NookAO {
 			owned.push(one);
 			return one;
 		};
-		// Linear depth and normals, once for all passes after it.
+		// Linear depth and normals, once for all passes after it. 0.5001: a component of 0 becomes 128 of 255, whatever its rounding.
 		const surfaces = own(targets, targetOf(FloatType, RedFormat, { count: given ? 1 : 2 }));
 		if (!given) Object.assign(surfaces.textures[1], { type: UnsignedByteType, format: RGBAFormat });
 		const surface = {
@@ -187,7 +179,7 @@ void main() {
 	ivec2 pixel = ivec2(gl_FragCoord.xy);
 	depth = nookDepth(pixel);
 	depth = depth < sky ? depth : NOOK_SKY;
-	${given ? '' : 'normal = depth < NOOK_SKY ? vec4(0.5 + 0.5 * nookNormalFromDepth(pixel), 1.0) : vec4(0.5);'}
+	${given ? '' : 'normal = depth < NOOK_SKY ? vec4(0.5001 + 0.5 * nookNormalFromDepth(pixel), 1.0) : vec4(0.5);'}
 }`, { nook_depths: null, sky: 1e30, log_far: 1 }),
 		};
 		const { width, height, texels } = tiles[this.quality];

@@ -21,48 +21,38 @@ export interface NookAOOptions {
 	sky?: number;
 }
 
-export interface NookPassOptions extends NookAOOptions {
+export interface SharedOptions extends NookAOOptions {
 	/** What to show. 'split' leaves out the obscurance in the left half. Default 'combined'. */
 	view?: View;
 	/** Colour of full obscurance. Default black. */
 	tint?: ColorRepresentation;
+	/** Draws transparent objects over the obscurance; they neither occlude nor receive any. Default true. */
+	excludeTransparent?: boolean;
+	/** Layers, 0 to 31, whose objects are treated in the same way. Default none. */
+	excludeLayers?: number[];
+}
+
+export interface NookPassOptions extends SharedOptions {
 	/** 'pass' draws the scene's own normals; 'depth' computes them from depth. Default 'depth'. */
 	normals?: 'depth' | 'pass';
 	/** With useBakedVisibility: the lower visibility of bake and screen decides. Default false. */
 	baked?: boolean;
 	/** Static occlusion of the level, drawn with every frame; the lower visibility decides. Default null. */
 	volumes?: NookVolumes | null;
-	/** false: colours come from the pass before, depth from its depth texture or a separate pass. Default true; false with `postprocessing`. */
+	/** false: colours come from the pass before, depth from its depth texture or a separate pass. Default true; false with `postprocessing`. Objects are excluded, and `samples` used, only with true. */
 	renderScene?: boolean;
-	/** With renderScene: samples per pixel of the frame, 0 to 16. Default 0. */
+	/** Samples per pixel of the frame, 0 to 16. Default 0. */
 	samples?: number;
-	/** With renderScene: draws transparent objects over the obscurance; they neither occlude nor receive any. Default true. */
-	excludeTransparent?: boolean;
-	/** Layers, 0 to 31, whose objects are treated in the same way. Default none. */
-	excludeLayers?: number[];
 }
 
+export interface NookPass extends Required<Omit<NookPassOptions, 'tint'>> {}
 /** Draws a scene with ambient occlusion, in place of a RenderPass. */
-export class NookPass extends Pass implements Required<Omit<NookPassOptions, 'tint'>> {
+export class NookPass extends Pass {
 	constructor(scene: Scene, camera: Camera, width?: number, height?: number, options?: NookPassOptions);
 	scene: Scene;
 	camera: Camera;
-	radius: number;
-	quality: Quality;
-	intensity: number;
-	halfResolution: boolean;
-	temporal: boolean;
-	sky: number;
-	view: View;
 	get tint(): Color;
 	set tint(colour: ColorRepresentation);
-	normals: 'depth' | 'pass';
-	baked: boolean;
-	volumes: NookVolumes | null;
-	renderScene: boolean;
-	samples: number;
-	excludeTransparent: boolean;
-	excludeLayers: number[];
 	/** Visibility of the last frame, 1 where open, in the first channel; null before the first. */
 	get texture(): Texture | null;
 	/** Forgets earlier frames of `temporal`. Call it after a cut of the camera. */
@@ -73,16 +63,11 @@ export class NookPass extends Pass implements Required<Omit<NookPassOptions, 'ti
 	dispose(): void;
 }
 
+export interface NookAO extends Required<NookAOOptions> {}
 /** Visibility of a depth texture, for renderers without a composer. */
-export class NookAO implements Required<NookAOOptions> {
+export class NookAO {
 	constructor(camera: Camera, width: number, height: number, options?: NookAOOptions);
 	camera: Camera;
-	radius: number;
-	quality: Quality;
-	intensity: number;
-	halfResolution: boolean;
-	temporal: boolean;
-	sky: number;
 	/** Visibility of the last frame, 1 where open, in the first channel; null before the first. */
 	get texture(): Texture | null;
 	/** Linear depths of the last frame, 1e30 for sky. */

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Options as properties that check what is set.
+// Options as properties that check what is set, and the settings of the module's block.
+import { fill, recipe } from './nook_slices.js';
+
 const shown = value => typeof value === 'string' ? `'${value}'` : Array.isArray(value) ? JSON.stringify(value) : String(value);
 const isPositive = value => Number.isFinite(value) && value > 0;
 const isTruth = value => typeof value === 'boolean';
@@ -34,3 +36,20 @@ export const rows = {
 	temporal: truth(false),
 	sky: { fallback: Infinity, valid: value => value > 0, expected: 'a number above 0 or Infinity' },
 };
+
+export const views = ['combined', 'off', 'split', 'visibility', 'normals', 'depth'];
+const isLayers = value => Array.isArray(value) && value.every(layer => Number.isInteger(layer) && layer >= 0 && layer < 32);
+
+/** The options of both passes. Color: the class of three.js; isVolumes: whether volumes are those of the pass. */
+export const passRows = (Color, isVolumes) => ({
+	...rows,
+	view: oneOf(...views),
+	tint: { fallback: 0x000000, valid: value => value !== undefined && value !== null, expected: 'a colour', stored: value => new Color(value) },
+	excludeTransparent: truth(true),
+	excludeLayers: { fallback: [], valid: isLayers, expected: 'an array of layers, 0 to 31' },
+	volumes: { fallback: null, valid: value => value === null || isVolumes(value), expected: 'a NookVolumes or null' },
+});
+
+/** The module's block for a camera and the options of a pass, as 48 floats. others: further settings. */
+export const blockOf = (owner, pass, camera, others) => fill(owner, camera.projectionMatrix.elements,
+	{ ...recipe, radius: recipe.radius * pass.radius, power: recipe.power * pass.intensity, ...others });

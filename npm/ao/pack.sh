@@ -7,9 +7,9 @@ nook=$(realpath "$(command -v "$1")")
 here=$(cd "$(dirname "$0")" && pwd)
 mkdir -p "$2"
 cp "$here"/*.d.ts "$here/README.md" "$2"
-# Comments below the head and indentation would be a tenth of the package; the types have the documentation.
+# Comments, indentation and spaces would be a tenth of the package; the types have the documentation.
 for script in "$here"/*.js; do
-	sed -e '3,$ { /^\t*\/\/ /d; /^\t*\/\*\*.*\*\/$/d; /^\t*\/\*\*/,/\*\/$/d; s/^\t*//; s/[ \t]*\/\/ [^"'"'"'`]*$//; }' "$script" >"$2/${script##*/}"
+	sed -e '2,$ { /^\t*\/\//d; /^\t*\/\*\*.*\*\/$/d; /^\t*\/\*\*/,/\*\/$/d; s/^\t*//; s/[ \t]*\/\/ [^"'"'"'`]*$//; }' "$script" >"$2/${script##*/}"
 done
 # The licence of emitted files covers the package as well: leave out the sentence that lists them.
 sed '/^This licence covers/,/^$/d' "$here/../../LICENSES/MIT.txt" >"$2/LICENSE"

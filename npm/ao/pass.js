@@ -6,27 +6,20 @@ import {
 } from 'three';
 import { FullScreenQuad, Pass } from 'three/addons/postprocessing/Pass.js';
 import { isReady, NookAO, screenMaterial, targetOf } from './ao.js';
-import { defineOptions, oneOf, rows, truth } from './options.js';
+import { excludedOf, hide, hideOthers, show } from './exclude.js';
+import { defineOptions, oneOf, passRows, rows, truth, views } from './options.js';
 
-const isLayers = value => Array.isArray(value) && value.every(layer => Number.isInteger(layer) && layer >= 0 && layer < 32);
-
-const passRows = {
-	...rows,
-	view: { ...oneOf('combined', 'off', 'split', 'visibility', 'normals', 'depth') },
-	tint: { fallback: 0x000000, valid: value => value !== undefined && value !== null, expected: 'a colour', stored: value => new Color(value) },
+const ownRows = {
+	...passRows(Color, value => typeof value?.render === 'function'),
 	normals: oneOf('depth', 'pass'),
 	baked: truth(false),
-	volumes: { fallback: null, valid: value => value === null || typeof value?.render === 'function', expected: 'a NookVolumes or null' },
 	renderScene: truth(true),
 	samples: { fallback: 0, valid: value => Number.isInteger(value) && value >= 0 && value <= 16, expected: 'a whole number from 0 to 16' },
-	excludeTransparent: truth(true),
-	excludeLayers: { fallback: [], valid: isLayers, expected: 'an array of layers, 0 to 31' },
 };
 
 const blend = {
 	blending: CustomBlending, blendEquation: AddEquation, blendSrc: ZeroFactor, blendDst: SrcColorFactor, blendSrcAlpha: ZeroFactor, blendDstAlpha: OneFactor,
 };
-const views = ['combined', 'off', 'split', 'visibility', 'normals', 'depth'];
 
 /** Draws colours × visibility, or one of the views. */
 class Composite {
@@ -112,7 +105,7 @@ function cutHoles(shader) {
 /** Draws the scene's depth, where no texture has it, and the normals of its materials: smooth, mapped, of both sides, with holes. */
 class Prepass {
 	constructor() {
-		this.materials = new Map(); // a material's normals by the material
+		this.materials = new Map(); // material to its normals
 		this.target = targetOf(UnsignedByteType);
 		this.target.depthBuffer = true;
 		this.target.depthTexture = new DepthTexture(1, 1, FloatType);
@@ -176,7 +169,7 @@ let clock = 0;
 export const passOn = Base => class extends Base {
 	constructor(scene, camera, width = 512, height = 512, options = {}) {
 		super('NookPass', scene, camera);
-		defineOptions(this, 'NookPass', passRows, options);
+		defineOptions(this, 'NookPass', ownRows, options);
 		this.scene = scene;
 		this.camera = camera;
 		this._ao = new NookAO(camera, width, height);
@@ -265,9 +258,9 @@ export const passOn = Base => class extends Base {
 		const frame = this._frame;
 		frame.setSize(width, height);
 		const { scene, camera } = this;
-		const excluded = this._excluded();
+		const excluded = excludedOf(this);
 		const kept = [renderer.autoClear, scene.background, renderer.shadowMap.autoUpdate];
-		const ghosts = hide(excluded);
+		const ghosts = hide(excluded, invisible);
 		renderer.autoClear = true;
 		renderer.setRenderTarget(frame);
 		renderer.render(scene, camera);
@@ -293,12 +286,7 @@ export const passOn = Base => class extends Base {
 		}
 		const values = { ...Composite.valuesOf(this, this._ao, null, null), alphas: this._alphas?.texture ?? null };
 		if (this.view === 'combined') composite.draw(renderer, composite.factor, frame, values);
-		const others = [];
-		scene.traverse(object => {
-			if (object.layers.mask !== 0 && (object.isMesh || object.isLine || object.isPoints || object.isSprite) && !excluded.includes(object)) others.push(object);
-		});
-		const ghosts = others.map(object => [object, object.layers.mask, null]);
-		for (const object of others) object.layers.mask = 0;
+		const ghosts = hideOthers(scene, excluded);
 		renderer.autoClear = false;
 		renderer.shadowMap.autoUpdate = false;
 		scene.background = null;
@@ -306,38 +294,8 @@ export const passOn = Base => class extends Base {
 		renderer.render(scene, camera);
 		show(ghosts);
 	}
-
-	_excluded() {
-		let mask = 0;
-		for (const layer of this.excludeLayers) mask |= 1 << layer;
-		const excluded = [];
-		this.scene.traverseVisible(object => {
-			if (!object.material || !object.layers.test(this.camera.layers)) return;
-			const transparent = this.excludeTransparent && [object.material].flat().every(material => material.transparent);
-			if (transparent || (object.layers.mask & mask) !== 0) excluded.push(object);
-		});
-		return excluded;
-	}
 };
 
 export class NookPass extends /* @__PURE__ */ passOn(Pass) {}
 
 const invisible = [0, 1, 2].map(side => new MeshBasicMaterial({ colorWrite: false, depthWrite: false, side }));
-
-// Hides objects from the next drawing without hiding their children. Those that cast a shadow stay, with a material that draws
-// nothing, so that the shadow stays as well. Returns what show() needs to undo it.
-function hide(objects) {
-	return objects.map(object => {
-		const hidden = [object, object.layers.mask, object.material];
-		if (object.castShadow && object.isMesh) object.material = invisible[[object.material].flat()[0].side];
-		else object.layers.mask = 0;
-		return hidden;
-	});
-}
-
-function show(hidden) {
-	for (const [object, mask, material] of hidden) {
-		object.layers.mask = mask;
-		if (material) object.material = material;
-	}
-}

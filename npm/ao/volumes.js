@@ -6,7 +6,10 @@ import { glsl } from './nook_aov.js';
 import { readVolumes, VolumesGl } from './volumes_gl.js';
 
 // Normals are encoded as those of NookAO.
-const normals = `uniform highp sampler2D nook_normals;
+const normals = `precision highp float;
+precision highp int;
+precision highp sampler2D;
+uniform sampler2D nook_normals;
 #define NOOK_NORMAL(pixel) normalize(texelFetch(nook_normals, pixel, 0).xyz * 2.0 - 1.0)
 `;
 

@@ -101,8 +101,8 @@ function checkVolumes({ clusters, polygons, corners, indices, vertices, hasPrism
 const isUsualW = (x, y, z, one) => x === 0 && y === 0 && ((Math.abs(Math.abs(z) - 1) <= 1e-5 && one === 0) || (z === 0 && one !== 0));
 
 // Returns the error in a projection, or nothing.
-function faultOf(p) {
-	if (!Array.prototype.every.call(p, Number.isFinite)) return 'infinity or NaN';
+export function faultOf(p) {
+	if (!Array.prototype.every.call(p, Number.isFinite)) return 'found infinity or NaN, expected 16 finite numbers';
 	if (!isUsualW(p[3], p[7], p[11], p[15]) && isUsualW(p[12], p[13], p[14], p[15])) return 'looks row-major: transpose it';
 	if (p[1] !== 0 || p[4] !== 0 || p[3] !== 0 || p[7] !== 0 || p[0] === 0 || p[5] === 0) return 'found a skew';
 	if (p[11] > 0) return 'looks left-handed: w = +z; negate numbers 8 to 11, and z of cameraFromWorld and the normals';

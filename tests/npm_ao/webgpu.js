@@ -3,14 +3,15 @@
 import * as THREE from 'three';
 import * as GPU from 'three/webgpu';
 import { vec4 } from 'three/tsl';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { EffectComposer } from 'three/addons/postprocessing/EffectComposer.js';
-import { NookPass } from 'nook-ao';
-import { nookPass } from 'nook-ao/webgpu';
+import { NookPass, NookVolumes as GlVolumes } from 'nook-ao';
+import { nookPass, NookVolumes } from 'nook-ao/webgpu';
 import { cameraOf, sceneOf } from './scene.js';
 
 // With an odd height, every second row from the top is every second from the bottom: both half resolutions take the same pixels.
 const width = 192, height = 109;
-const said = { refused: [] };
+const said = { refused: [] }, refusedLast = [];
 const refusal = call => {
 	try {
 		call();
@@ -31,13 +32,17 @@ const gl = new THREE.WebGLRenderer(), three = await rendererOf();
 gl.setSize(width, height);
 said.webgpu = three.backend.isWebGPUBackend === true;
 
-// Pictures as numbers, rows from the top.
-function withGl(options, camera = perspective(), scene = sceneOf().scene) {
+// Pictures as numbers, rows from the top. moves: called before each frame after the first.
+function withGl(options, camera = perspective(), scene = sceneOf().scene, moves = []) {
 	const pass = new NookPass(scene, camera, width, height, options);
 	const composer = new EffectComposer(gl, new THREE.WebGLRenderTarget(width, height, { type: THREE.HalfFloatType }));
 	composer.renderToScreen = false;
 	composer.addPass(pass);
 	composer.render(0);
+	for (const move of moves) {
+		move(camera);
+		composer.render(0);
+	}
 	const texels = new Uint16Array(4 * width * height);
 	gl.readRenderTargetPixels(composer.readBuffer, 0, 0, width, height, texels);
 	pass.dispose();
@@ -62,9 +67,13 @@ function pipelineOf(renderer, node, visibility) {
 	return pipeline;
 }
 
-async function withGpu(options, { camera = perspective(), renderer = three, visibility = true, scene = sceneOf().scene } = {}) {
-	const node = nookPass(scene, camera, options);
-	const picture = await pictureOf(renderer, pipelineOf(renderer, node, visibility));
+async function withGpu(options, { camera = perspective(), renderer = three, visibility = true, scene = sceneOf().scene, moves = [] } = {}) {
+	const node = nookPass(scene, camera, options), pipeline = pipelineOf(renderer, node, visibility);
+	let picture = await pictureOf(renderer, pipeline);
+	for (const move of moves) {
+		move(camera);
+		picture = await pictureOf(renderer, pipeline);
+	}
 	node.dispose();
 	node.dispose();
 	return picture;
@@ -98,9 +107,58 @@ const withGlass = () => {
 const glass = await withGpu({}, { visibility: false, scene: withGlass() });
 said.transparent = apart(withGl({}, perspective(), withGlass()), glass);
 said.darkened = apart(await withGpu({ excludeTransparent: false }, { visibility: false, scene: withGlass() }), glass);
+// The other views, and a half of the picture without obscurance.
+for (const view of ['off', 'split', 'visibility', 'normals', 'depth']) said[view] = apart(withGl({ view }), await withGpu({ view }, { visibility: false }));
+said.half = apart(await withGpu({ view: 'split' }, { visibility: false }), await withGpu({}, { visibility: false }));
+// Objects of layer 3, one of which casts a shadow: drawn over the obscurance, or with it.
+const layered = () => {
+	const { scene, box } = sceneOf();
+	for (const one of [box(-0.4, 0.6, 0.6, 0.6, 1.2, 0.6), box(1.5, 0.3, 1.2, 0.6, 0.6, 0.6)]) one.layers.set(3);
+	scene.children.at(-1).castShadow = true;
+	return scene;
+};
+const both = () => {
+	const camera = perspective();
+	camera.layers.enable(3);
+	return camera;
+};
+const over = await withGpu({ excludeLayers: [3] }, { visibility: false, scene: layered(), camera: both() });
+said.layers = apart(withGl({ excludeLayers: [3] }, both(), layered()), over);
+said.included = apart(await withGpu({}, { visibility: false, scene: layered(), camera: both() }), over);
+// Means of frames: of a still camera, and of one that moves and turns.
+const still = Array.from({ length: 7 }, () => () => {});
+const moves = still.map(() => camera => {
+	camera.position.x += 0.04;
+	camera.rotation.y += 0.01;
+	camera.updateMatrixWorld();
+});
+const mean = await withGpu({ temporal: true }, { moves: still });
+said.temporal = apart(withGl({ temporal: true, ...seen }, perspective(), sceneOf().scene, still), mean);
+said.averaged = apart(base, mean);
+said.moved = apart(withGl({ temporal: true, halfResolution: true, ...seen }, perspective(), sceneOf().scene, moves), await withGpu({ temporal: true, halfResolution: true }, { moves }));
+// Volumes: as in WebGL, by a depth buffer of either direction, and darker than the screen alone.
 const reversed = await rendererOf({ reversedDepthBuffer: true });
+{
+	const { scene: level, cameras } = await new GLTFLoader().loadAsync('baked.glb'), room = new THREE.Scene().add(level, new THREE.HemisphereLight());
+	room.updateMatrixWorld(true);
+	const inside = () => {
+		const camera = new THREE.PerspectiveCamera(cameras[0].fov, width / height, 0.1, 100);
+		cameras[0].matrixWorld.decompose(camera.position, camera.quaternion, camera.scale);
+		camera.updateMatrixWorld();
+		return camera;
+	};
+	const file = await (await fetch('volumes.glb')).arrayBuffer(), volumes = new NookVolumes(file);
+	const lower = await withGpu({ volumes }, { scene: room, camera: inside() });
+	const known = new GlVolumes(file);
+	said.volumes = apart(withGl({ volumes: known, ...seen }, inside(), room), lower);
+	said.volumesReversed = apart(lower, await withGpu({ volumes }, { scene: room, camera: inside(), renderer: reversed }));
+	said.screen = apart(await withGpu({}, { scene: room, camera: inside() }), lower);
+	said.refused.push(refusal(() => nookPass(room, inside(), { volumes: known })));
+	volumes.dispose();
+	volumes.dispose();
+	refusedLast.push(() => nookPass(room, inside(), { volumes }));
+}
 said.reversed = apart(base, await withGpu({}, { renderer: reversed }));
-reversed.dispose();
 
 // Options of a node that is in use, other sizes.
 {
@@ -148,7 +206,7 @@ reversed.dispose();
 	said.infinite = apart(base, await withGpu({}, { camera }));
 }
 const { scene } = sceneOf();
-said.refused.push(refusal(() => nookPass(scene, perspective(), { radius: 0 })), refusal(() => nookPass(scene, perspective(), { temporal: true })));
+said.refused.push(refusal(() => nookPass(scene, perspective(), { radius: 0 })), refusal(() => nookPass(scene, perspective(), { samples: 4 })));
 const other = new GPU.WebGPURenderer({ forceWebGL: true });
 await other.init();
 said.refused.push(refusal(() => pipelineOf(other, nookPass(scene, perspective()), true).render()));
@@ -156,5 +214,21 @@ const logarithmic = await rendererOf({ logarithmicDepthBuffer: true });
 said.refused.push(refusal(() => pipelineOf(logarithmic, nookPass(scene, perspective()), true).render()));
 // Last: after an error in a frame of a canvas, Chromium draws no more.
 const unlimited = cameraOf(new THREE.PerspectiveCamera(50, width / height, 0.1, Infinity));
-said.refused.push(refusal(() => pipelineOf(three, nookPass(scene, unlimited), true).render()));
+refusedLast.push(() => nookPass(scene, unlimited));
+for (const make of refusedLast) {
+	const node = make();
+	said.refused.push(refusal(() => pipelineOf(three, node, true).render()));
+	node.dispose();
+}
+// A lost device draws nothing and says so once. In headless Chromium the page's other contexts are lost with it.
+const node = nookPass(sceneOf().scene, perspective()), { device } = reversed.backend;
+reversed.setRenderTarget(new GPU.RenderTarget(width, height)); // not a canvas, for which Chromium would wait
+pipelineOf(reversed, node, true).render();
+said.texts = [];
+console.error = () => {};
+console.warn = text => said.texts.push(text);
+device.destroy();
+await device.lost;
+for (let i = 0; i < 3; ++i) said.refused.push(refusal(() => node.updateBefore({ renderer: reversed })));
+said.refused.push(refusal(() => node.dispose()), refusal(() => node.dispose()));
 globalThis.said = said;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// node serve.js PORT: serves this folder to a local browser. cpu/N: processor time of process N, milliseconds.
+// node serve.js PORT: serves this folder to a local browser, with imports.html in the head of each page. cpu/N: processor time of process N, milliseconds.
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
@@ -16,7 +16,8 @@ const server = createServer(async (request, answer) => {
 			answer.end(String(10 * (+fields[11] + +fields[12])));
 			return;
 		}
-		const bytes = await readFile(join(folder, path.endsWith('/') ? `${path}index.html` : path));
+		let bytes = await readFile(join(folder, path.endsWith('/') ? `${path}index.html` : path));
+		if (/(\/|\.html)$/.test(path)) bytes = bytes.toString().replace('<!-- imports.html -->', await readFile(join(folder, 'imports.html')));
 		answer.writeHead(200, { 'Content-Type': types[extname(path)] ?? (path.endsWith('/') ? 'text/html' : 'application/octet-stream') });
 		answer.end(bytes);
 	} catch {

@@ -173,8 +173,7 @@ void declare(CLI::App& app, BakeOptions& options)
 				  "The only parts of the level that rays meet, chosen as by --ignore (default: all)"),
 		 partsRow("--receivers", options.receivers,
 				  "The only parts that get values, chosen as by --ignore, or whose box has probes; the others stay as they are "
-				  "(default: all)",
-				  excludes("--max-error", "one of them, since the file of split triangles has all parts")),
+				  "(default: all)"),
 		 {"--from",
 		  takesText(options.from, "FILE"),
 		  "A detailed level that this one stands for: values are those of its surface, and rays meet it alone",
@@ -371,11 +370,11 @@ struct Made
 struct BakeInput
 {
 	Tracer tracer;
-	std::vector<glm::uvec3> triangles; // as the file has them, if some were turned for the bake
-	bool in_place = false;             // the level's own glTF file takes the values
-	std::vector<uint8_t> receivers;    // 1 for each triangle that gets values; empty: all
-	std::optional<LevelPart> part;     // these triangles
-	std::optional<Level> coarse{};     // that stands for the tracer's level (--from)
+	std::vector<uint8_t> turned;    // 1 for each receiving triangle that the file has the other way round; empty: none
+	bool in_place = false;          // the level's own glTF file takes the values
+	std::vector<uint8_t> receivers; // 1 for each triangle that gets values; empty: all
+	std::optional<LevelPart> part;  // these triangles
+	std::optional<Level> coarse{};  // that stands for the tracer's level (--from)
 
 	const Level& level() const
 	{
@@ -393,13 +392,6 @@ template <class Value> std::vector<Value> spread(const BakeInput& input, const s
 	const std::vector<uint32_t>& vertices = input.part->vertices;
 	return listOf(vertices.size(), [&](std::size_t v)
 				  { return vertices[v] == UINT32_MAX ? Value(std::numeric_limits<float>::quiet_NaN()) : values[vertices[v]]; });
-}
-
-GltfFile fileOf(const BakeOptions& options)
-{
-	GltfFile file = openGltf(options.level.level);
-	file.settings = options.level.load;
-	return file;
 }
 
 // The record in asset.extras: the same for the same command, wherever it runs.
@@ -439,45 +431,55 @@ bool isValues(const std::string& path)
 	return ending == ".csv" || ending == ".npy" || ending == ".json";
 }
 
-// Where a level's vertices are in its own file, or in one made of it.
-GltfFile fileOf(const BakeOptions& options, const BakeInput& input, const Level& level, std::vector<GltfPlace>& places,
-				Level* as_read, const RunSettings& how)
+// The level's own file, or one made of a level, and where the vertices of receiving parts are in it.
+struct BakeFile
 {
+	GltfFile file;
+	std::vector<GltfPlace> places;
+};
+
+// `as_read`: becomes the level before it was cleaned, whose vertices the places then have.
+BakeFile fileOf(const BakeOptions& options, const BakeInput& input, const Level& level, const RunSettings& how,
+				Level* as_read = nullptr)
+{
+	BakeFile made;
 	if (input.in_place)
 	{
-		places = loadPlaces(options.level.level, options.level.load, input.level(), options.receivers, how, as_read);
-		return fileOf(options);
+		made.places = loadPlaces(options.level.level, options.level.load, input.level(), options.receivers, how, as_read);
+		made.file = openGltf(options.level.level);
+		made.file.settings = options.level.load;
 	}
-	GltfFile file = openGlb(levelGlb(level, kProgram, places), level.name);
-	std::erase_if(places, [&input](const GltfPlace& place) { return input.part && input.receivers[place.triangle] == 0; });
-	return file;
-}
-
-// Adds values to the level's file, or to a file made of the level.
-GltfBaked write(const BakeOptions& options, const BakeInput& input, const Level& level, const GltfBake& bake, Made& made,
-				const RunSettings& how)
-{
-	std::vector<GltfPlace> places;
-	std::vector<std::string> outputs = options.outputs.files;
-	std::erase_if(outputs, [](const std::string& path) { return isValues(path) || isTexture(path); });
-	outputs.resize(std::max<std::size_t>(outputs.size(), 1), "-"); // its size is reported in any case
-	const GltfFile file = fileOf(options, input, input.part ? input.level() : level, places, nullptr, how);
-	for (std::size_t i = 0; input.part && i < places.size(); ++i)
+	else
 	{
-		for (auto& [of_file, of_level] : places[i].vertices)
+		made.file = openGlb(levelGlb(level, kProgram, made.places), level.name);
+		std::erase_if(made.places, [&input](const GltfPlace& place) { return input.part && input.receivers[place.triangle] == 0; });
+	}
+	const bool maps = input.part && (as_read == nullptr);
+	for (std::size_t i = 0; maps && i < made.places.size(); ++i)
+	{
+		for (auto& [of_file, of_level] : made.places[i].vertices)
 		{
 			of_level = input.part->vertices[of_level];
 		}
-		std::erase_if(places[i].vertices, [](const auto& vertex) { return vertex.second == UINT32_MAX; });
+		std::erase_if(made.places[i].vertices, [](const auto& vertex) { return vertex.second == UINT32_MAX; });
 	}
-	GltfBaked baked = bakeInto(file, places, bake, outputs);
+	return made;
+}
+
+// Adds values to the file.
+GltfBaked write(const BakeOptions& options, const BakeFile& target, const Level& level, const GltfBake& bake, Made& made)
+{
+	std::vector<std::string> outputs = options.outputs.files;
+	std::erase_if(outputs, [](const std::string& path) { return isValues(path) || isTexture(path); });
+	outputs.resize(std::max<std::size_t>(outputs.size(), 1), "-"); // its size is reported in any case
+	GltfBaked baked = bakeInto(target.file, target.places, bake, outputs);
 	if (!level.sources.empty())
 	{
-		places.assign(1, {});
-		places.front().count = level.source_count;
+		baked.places.assign(1, {});
+		baked.places.front().count = level.source_count;
 		for (std::size_t v = 0; v < level.sources.size(); ++v)
 		{
-			places.front().vertices.emplace_back(level.sources[v], static_cast<uint32_t>(v));
+			baked.places.front().vertices.emplace_back(level.sources[v], static_cast<uint32_t>(v));
 		}
 	}
 	for (std::size_t i = 0, next = 0; i < options.outputs.files.size(); ++i)
@@ -485,7 +487,7 @@ GltfBaked write(const BakeOptions& options, const BakeInput& input, const Level&
 		const std::string& path = options.outputs.files[i];
 		if (!isTexture(path))
 		{
-			made.bytes.push_back(isValues(path) ? placeValues(places, baked.front, baked.back, endingOf(path))
+			made.bytes.push_back(isValues(path) ? placeValues(baked.places, baked.front, baked.back, endingOf(path))
 												: baked.files[next++]);
 		}
 	}
@@ -502,7 +504,7 @@ void addFile(Facts& facts, const BakeInput& input, const GltfBaked& baked)
 	facts.text("file", input.in_place ? "the level's, with additions" : "a new one");
 	facts.whole("bytes_added", baked.bytes_added);
 	facts.whole("bytes", baked.files.front().size());
-	if (baked.shared_meshes > 0)
+	if (baked.shared_meshes + baked.copies > 0)
 	{
 		facts.whole("shared_meshes", baked.shared_meshes, "meshes at several places");
 		facts.whole("mesh_copies", baked.copies, "meshes added for their values");
@@ -518,16 +520,18 @@ void addFile(Facts& facts, const BakeInput& input, const GltfBaked& baked)
 }
 
 // In the file, triangles that were turned for the bake show their other sides.
-void turnBack(const BakeInput& input, const Level& level, VertexBake& bake)
+void turnBack(const BakeInput& input, Level& level, VertexBake& bake)
 {
 	std::vector<uint8_t> seen(level.positions.size(), 0); // 1: by a triangle that was not turned
-	for (std::size_t t = 0; t < input.triangles.size(); ++t)
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
 	{
-		const uint8_t bit = input.triangles[t] == level.triangles[t] ? 1 : 2;
-		for (int corner = 0; corner < 3; ++corner)
+		glm::uvec3& corner = level.triangles[t];
+		const bool is_turned = input.turned[bake.refined ? bake.split.origins[t] : t] != 0;
+		for (int k = 0; k < 3; ++k)
 		{
-			seen[level.triangles[t][corner]] |= bit;
+			seen[corner[k]] |= is_turned ? 2U : 1U;
 		}
+		is_turned ? std::swap(corner.y, corner.z) : void();
 	}
 	for (std::size_t v = 0; v < seen.size() && !bake.back.empty(); ++v)
 	{
@@ -547,25 +551,38 @@ Made makeVertices(const BakeOptions& options, const BakeInput& input, Facts& fac
 	BakeSettings settings = options.settings;
 	const Level& receiving = input.part ? input.part->level : input.level();
 	settings.receivers = &receiving;
-	VertexBake bake = bakeVertices(input.tracer, settings, how);
-	std::optional<Level> turned;
-	if (!input.triangles.empty())
+	BakeFile target = fileOf(options, input, input.level(), how);
+	GltfBake in = bakeOf(options);
+	VertexBake bake;
+	const bool splits = settings.max_error > 0.0 && (input.in_place || input.part);
+	in.split.how = splits ? &bake.split : nullptr;
+	checkTarget(target.file, target.places, in);
+	bake = bakeVertices(input.tracer, settings, how);
+	std::vector<glm::uvec3> split; // triangles
+	if (splits)
 	{
-		turnBack(input, receiving, bake);
-		turned = receiving;
-		turned->triangles = input.triangles;
+		split = bake.refined->triangles;
+		in.split = {&bake.split, receiving.triangles, split, receiving.positions.size()};
+	}
+	else if (bake.refined)
+	{
+		target = fileOf(options, input, *bake.refined, how);
+	}
+	std::optional<Level> turned;
+	if (!input.turned.empty())
+	{
+		turnBack(input, bake.refined ? *bake.refined : turned.emplace(receiving), bake);
 	}
 	const Level& level = bake.refined ? *bake.refined : turned ? *turned : receiving;
 	Made made;
 	std::optional<GltfBaked> baked;
 	if (!isShare(how))
 	{
-		GltfBake in = bakeOf(options);
 		in.visibility = bake.visibility;
 		in.back = bake.back;
 		in.bent = bake.bent;
 		in.bent_back = bake.bent_back;
-		baked = write(options, input, level, in, made, how);
+		baked = write(options, target, level, in, made);
 		bake.visibility = baked->front;
 		bake.back = baked->back;
 	}
@@ -672,11 +689,13 @@ void addTexture(Facts& facts, const std::vector<TextureBake>& pages, std::size_t
 
 Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& facts, const RunSettings& how)
 {
-	std::vector<GltfPlace> places;
 	Level as_read;
-	const GltfFile file = fileOf(options, input, input.level(), places, &as_read, how);
+	const auto [file, places] = fileOf(options, input, input.level(), how, &as_read);
+	GltfBake in = bakeOf(options);
+	in.charts.resize(places.size());
+	checkTarget(file, places, in);
 	const Level& level = input.in_place ? as_read : input.level();
-	const Unwrapped unwrapped = unwrap(level, piecesOf(places, level.name), options.charts, how);
+	const Unwrapped unwrapped = unwrap(level, piecesOf(places), options.charts, how);
 	BakeSettings settings = options.settings;
 	const auto marksOf = [&](const auto& isWanted)
 	{
@@ -699,7 +718,6 @@ Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& fa
 	{
 		return {};
 	}
-	GltfBake in = bakeOf(options);
 	in.charts = chartsOf(places, unwrapped);
 	in.pages = mapped(pages, pngOf);
 	Made made;
@@ -750,6 +768,9 @@ Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& fact
 		}
 	}
 	const std::vector<glm::vec2>& uvs = of_file.empty() ? level.uvs : of_file;
+	const BakeFile target = fileOf(options, input, input.level(), how);
+	GltfBake in = bakeOf(options);
+	checkTarget(target.file, target.places, in);
 	std::vector<TextureBake> pages{bakeTexture(input.tracer, uvs, options.texture_px, settings, how)};
 	finishTextures(level, uvs, {}, pages, how.threads);
 	const BakeCheck check = checkTexture(input.tracer, uvs, pages, {}, settings, kCheckPoints, how);
@@ -760,7 +781,6 @@ Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& fact
 	const auto size = static_cast<std::size_t>(options.texture_px);
 	give<uint8_t>("texels", pages.front().values, {size, size});
 	const std::string png = pngOf(pages.front());
-	GltfBake in = bakeOf(options);
 	in.png = png;
 	in.uv_set = set;
 	if (!input.in_place)
@@ -768,7 +788,7 @@ Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& fact
 		in.uvs = uvs;
 	}
 	Made made;
-	const GltfBaked baked = write(options, input, level, in, made, how);
+	const GltfBaked baked = write(options, target, level, in, made);
 	addTextureFiles(options, pages, made);
 	facts.text("coordinates", second ? "second" : "first");
 	addTexture(facts, pages, png.size());
@@ -855,20 +875,16 @@ void run(BakeOptions& options, VerbProgress& progress)
 	addInputs(read, how);
 	const bool is_cell =
 		std::any_of(loaded.level.meshes.begin(), loaded.level.meshes.end(), [](const Mesh& mesh) { return mesh.around; });
-	const bool in_place = is_gltf && !is_cell && options.settings.max_error == 0.0;
+	const bool in_place = is_gltf && !is_cell;
 	if (!in_place)
 	{
 		checkPictures(loaded.level);
 	}
-	std::vector<glm::uvec3> triangles = in_place ? loaded.level.triangles : std::vector<glm::uvec3>();
+	const std::vector<glm::uvec3> triangles = in_place ? loaded.level.triangles : std::vector<glm::uvec3>();
 	const std::size_t turned = alignSheets(loaded.level, how.threads);
-	if (turned == 0)
-	{
-		triangles.clear();
-	}
 	const std::vector<uint8_t> occluders = chosenTriangles(loaded.level, options.occluders, "occluders");
 	BakeInput input{Tracer(detailed ? detailed->level : loaded.level, how, nullptr, occluders),
-					std::move(triangles),
+					{},
 					in_place,
 					chosenTriangles(loaded.level, options.receivers, "receivers"),
 					{}};
@@ -879,15 +895,13 @@ void run(BakeOptions& options, VerbProgress& progress)
 	if (!input.receivers.empty())
 	{
 		input.part = partOf(loaded.level, input.receivers, how.threads);
-		std::vector<glm::uvec3> of_part;
-		for (std::size_t t = 0; t < input.triangles.size(); ++t)
+	}
+	for (std::size_t t = 0; turned > 0 && t < triangles.size(); ++t)
+	{
+		if (!input.part || input.receivers[t] != 0)
 		{
-			if (input.receivers[t] != 0)
-			{
-				of_part.push_back(input.part->triangle(input.triangles[t]));
-			}
+			input.turned.push_back(triangles[t] == loaded.level.triangles[t] ? 0 : 1);
 		}
-		input.triangles = std::move(of_part);
 	}
 	Facts facts = verbFacts("bake");
 	addLevelFacts(facts, loaded);

@@ -786,17 +786,12 @@ Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const 
 	return made;
 }
 
-std::vector<UnwrapPiece> piecesOf(std::span<const GltfPlace> places, const std::string& name)
+std::vector<UnwrapPiece> piecesOf(std::span<const GltfPlace> places)
 {
 	std::map<std::tuple<std::size_t, std::size_t, bool>, std::size_t> known;
 	std::vector<UnwrapPiece> pieces;
 	for (const GltfPlace& place : places)
 	{
-		if (place.instance)
-		{
-			refuseInput(name + ": nodes[" + std::to_string(place.node) + "]", "instances by EXT_mesh_gpu_instancing",
-						"nodes with a mesh each, since instances share their coordinates", ExitCode::unsupported);
-		}
 		const auto [at, is_new] = known.try_emplace({place.mesh, place.primitive, place.mirrored}, pieces.size());
 		pieces.push_back({place.triangles, is_new ? SIZE_MAX : at->second});
 	}
@@ -832,7 +827,7 @@ std::vector<GltfCharts> chartsOf(std::span<const GltfPlace> places, const Unwrap
 					to = is_taken ? static_cast<uint32_t>(made.uvs.size()) : vertex;
 					if (is_taken)
 					{
-						made.copied.push_back(vertex);
+						made.copied.emplace_back(vertex, vertex);
 						made.uvs.emplace_back();
 					}
 					is_taken = true;

@@ -53,9 +53,9 @@ inline constexpr uint32_t kNoPage = UINT32_MAX;
 // too small. Same result for any thread count. Progress stages "charts" and "pages".
 Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const UnwrapSettings& settings, const RunSettings& run);
 
-// A glTF file's primitives at their places as pieces, and what they become. Throws Error (unsupported) for instances by
-// EXT_mesh_gpu_instancing, which share their coordinates; `name` is the file's.
-std::vector<UnwrapPiece> piecesOf(std::span<const GltfPlace> places, const std::string& name);
+// A glTF file's primitives at their places as pieces, and what they become. Not for instances, which share
+// their coordinates.
+std::vector<UnwrapPiece> piecesOf(std::span<const GltfPlace> places);
 std::vector<GltfCharts> chartsOf(std::span<const GltfPlace> places, const Unwrapped& unwrapped);
 
 // Shared by its parts.

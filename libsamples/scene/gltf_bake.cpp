@@ -26,7 +26,8 @@ namespace
 
 using Document = GltfEditor::Document;
 
-constexpr int kMostSet = 7;        // of texture coordinates
+constexpr int kMostSet = 7; // of texture coordinates
+constexpr const char* kRough = "metallicRoughnessTexture";
 constexpr std::size_t kTries = 64; // sets of values that a primitive is compared with: with all, a forest would take forever
 
 // Values of a bake that become one attribute.
@@ -129,6 +130,44 @@ public:
 		if (m_colors && m_editor.earlier.starts_with("color"))
 		{
 			m_editor.fail("COLOR_0", "an earlier bake in a file that was changed since", "the file before that bake");
+		}
+	}
+
+	void check(std::span<const GltfPlace> places)
+	{
+		const std::vector<MeshUnit> units = unitsOf(places);
+		for (const MeshUnit& unit : units)
+		{
+			for (const auto& [number, at] : unit.primitives)
+			{
+				const Document& primitive = primitiveOf(unit.mesh, number);
+				checkTarget(primitive["attributes"]);
+				const std::size_t rough = roughOf(numberIn(primitive, "material"));
+				if (rough != kNoNumber)
+				{
+					pictureOf(rough);
+				}
+			}
+		}
+		const bool own_vertices = !m_bake.charts.empty() || m_bake.split.how != nullptr;
+		for (const GltfPlace& place : places)
+		{
+			const std::string where = "nodes[" + std::to_string(place.node) + "]";
+			if (own_vertices && place.instance)
+			{
+				m_editor.fail(where, "instances by EXT_mesh_gpu_instancing",
+							  "nodes with a mesh each, since instances share their vertices", ExitCode::unsupported);
+			}
+			const Document& node = items("nodes")[place.node];
+			if (m_bake.instances == BakeInstances::attribute && m_placements[numberIn(node, "mesh")] > 1 && !place.instance &&
+				!node.value("extras", Document::object()).is_object())
+			{
+				m_editor.fail(where + ".extras", "no object", "one, or nothing", ExitCode::unsupported);
+			}
+		}
+		if (!m_bake.charts.empty())
+		{
+			freeSet(units);
 		}
 	}
 
@@ -288,8 +327,9 @@ private:
 		}
 		if (m_bake.target == BakeTarget::texcoord && m_editor.earlier != textIn(m_bake.record, "to"))
 		{
-			m_editor.fail(m_attribute, "it in use",
-						  "a set that is free, as --to texcoord:" + std::to_string(firstFreeSet(attributes)));
+			const int set = firstFreeSet(attributes);
+			m_editor.fail(m_attribute, set > kMostSet ? "it in use, as all sets are" : "it in use",
+						  set > kMostSet ? "another target" : "a set that is free, as --to texcoord:" + std::to_string(set));
 		}
 		const Document& accessor = items("accessors")[found];
 		if (m_bake.target != BakeTarget::texcoord && (accessor["type"] != "SCALAR" || accessor["componentType"] != 5126U))
@@ -501,14 +541,9 @@ private:
 					of_node[place.node].resize(*place.instance + 1, 1.0F);
 					of_node[place.node].back() = factor;
 				}
-				else if (node.value("extras", Document::object()).is_object())
-				{
-					node["extras"]["nook_visibility"] = factor;
-				}
 				else
 				{
-					m_editor.fail("nodes[" + std::to_string(place.node) + "].extras", "no object", "one, or nothing",
-								  ExitCode::unsupported);
+					node["extras"]["nook_visibility"] = factor;
 				}
 			}
 			first = end;
@@ -572,11 +607,18 @@ private:
 		return items("textures").size() - 1;
 	}
 
-	// A copy of a texture with another picture, scaled to its size, as its red channel.
-	std::size_t withRed(std::size_t texture, std::string_view png)
+	// The texture that takes the values in its red channel, if any.
+	std::size_t roughOf(std::size_t material)
 	{
-		Document made = items("textures")[texture];
-		const std::size_t number = numberIn(made, "source");
+		const Document item = material == kNoNumber || !m_bake.in_red ? Document::object() : items("materials")[material];
+		const Document pbr = item.value("pbrMetallicRoughness", Document::object());
+		return pbr.contains(kRough) ? numberIn(pbr[kRough], "index") : kNoNumber;
+	}
+
+	// Its picture; throws unless that has 8 bits per channel.
+	Image pictureOf(std::size_t texture)
+	{
+		const std::size_t number = numberIn(items("textures")[texture], "source");
 		const std::string where = "textures[" + std::to_string(texture) + "]";
 		if (number == kNoNumber)
 		{
@@ -590,7 +632,7 @@ private:
 								  : uri.empty()
 									  ? std::string(viewBytes(m_editor.file, numberIn(items("images")[number], "bufferView")))
 									  : dataOf(uri, item).value_or("");
-		const Image image = decodeImage(bytes, path.empty() ? "image.png" : path);
+		Image image = decodeImage(bytes, path.empty() ? "image.png" : path);
 		const auto is_fine = [](float value)
 		{
 			return std::fabs(255.0F * value - std::round(255.0F * value)) > 0.01F;
@@ -599,10 +641,18 @@ private:
 		{
 			m_editor.fail(where, "more than 8 bits per channel", "8 bits, for the red channel", ExitCode::unsupported);
 		}
+		return image;
+	}
+
+	// A copy of a texture with another picture, scaled to its size, as its red channel.
+	std::size_t withRed(std::size_t texture, std::string_view png)
+	{
+		Document made = items("textures")[texture];
 		std::vector<AlphaImage> red =
 			decodeAlphas({{"visibility.png", "", std::string(png), MaskChannel::red}}, m_editor.file.path);
 		const Mask values{"", red[0].width_px, red[0].height_px, Wrap::clamp, Wrap::clamp, std::move(red[0].alpha)};
-		made["source"] = addImage(textIn(items("images")[number], "name"), pngWithChannel(image, 0, values));
+		made["source"] =
+			addImage(textIn(items("images")[numberIn(made, "source")], "name"), pngWithChannel(pictureOf(texture), 0, values));
 		items("textures").push_back(made);
 		return items("textures").size() - 1;
 	}
@@ -610,9 +660,7 @@ private:
 	// Gives a material the texture, and keeps the strength of an earlier one.
 	void setTexture(std::size_t material, std::string_view png, std::size_t set)
 	{
-		constexpr const char* kRough = "metallicRoughnessTexture";
-		const Document pbr = items("materials")[material].value("pbrMetallicRoughness", Document::object());
-		const std::size_t rough = m_bake.in_red && pbr.contains(kRough) ? numberIn(pbr[kRough], "index") : kNoNumber;
+		const std::size_t rough = roughOf(material);
 		const auto [known, is_new] = m_textures.try_emplace({png.data(), rough}, 0);
 		if (is_new)
 		{
@@ -711,29 +759,6 @@ private:
 		return materials;
 	}
 
-	// An accessor with copies of some elements behind the others.
-	std::size_t extended(std::size_t accessor, const std::vector<uint32_t>& copied)
-	{
-		if (copied.empty())
-		{
-			return accessor;
-		}
-		const GltfValues values(m_editor.file, accessor);
-		std::string bytes;
-		for (std::size_t i = 0; i < values.count() + copied.size(); ++i)
-		{
-			values.append(bytes, i < values.count() ? i : copied[i - values.count()]);
-			padTo4(bytes);
-		}
-		Document item = items("accessors")[accessor];
-		const std::size_t count = values.count() + copied.size();
-		const std::size_t made = m_editor.addAccessor(textIn(item, "type"), numberIn(item, "componentType"), count, bytes);
-		item.erase("sparse");
-		item.update(items("accessors")[made]);
-		items("accessors")[made] = std::move(item);
-		return made;
-	}
-
 	// Gives the primitives of each node coordinates of their own, in copies of meshes at several nodes.
 	void addCharts(std::span<const GltfPlace> places, const std::vector<MeshUnit>& units, GltfBaked& made)
 	{
@@ -758,16 +783,9 @@ private:
 			{
 				const GltfCharts& charts = m_bake.charts[static_cast<std::size_t>(at.front() - places.data())];
 				const auto [shared, is_new] = split.try_emplace({unit.mesh, number}, original["primitives"][number]);
-				for (Document& accessor : is_new ? shared->second["attributes"] : m_none)
+				if (is_new)
 				{
-					accessor = extended(accessor.get<std::size_t>(), charts.copied);
-				}
-				for (Document& target : is_new && shared->second.contains("targets") ? shared->second["targets"] : m_none)
-				{
-					for (Document& accessor : target)
-					{
-						accessor = extended(accessor.get<std::size_t>(), charts.copied);
-					}
+					addVertices(m_editor, shared->second, charts.copied);
 				}
 				Document primitive = shared->second;
 				const std::size_t before = numberIn(primitive, "material");
@@ -810,7 +828,6 @@ private:
 
 	GltfEditor& m_editor;
 	const GltfBake& m_bake;
-	Document m_none = Document::array();
 	std::size_t m_sampler = kNoNumber;                                      // of the textures
 	std::map<std::pair<const char*, std::size_t>, std::size_t> m_textures;  // by picture and metallic-roughness texture
 	std::map<std::pair<std::size_t, std::size_t>, std::size_t> m_materials; // by the one before and the page
@@ -829,6 +846,12 @@ private:
 
 } // namespace
 
+void checkTarget(const GltfFile& file, std::span<const GltfPlace> places, const GltfBake& bake)
+{
+	GltfEditor editor(file, "-");
+	Baker(editor, bake).check(places);
+}
+
 GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, const GltfBake& bake,
 				   std::span<const std::string> outputs)
 {
@@ -839,7 +862,9 @@ GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, cons
 	{
 		made = {};
 		GltfEditor editor(file, output);
-		Baker(editor, bake).add(places, made);
+		made.places.assign(places.begin(), places.end());
+		made.copies = bake.split.how == nullptr ? 0 : splitTriangles(editor, made.places, bake.split);
+		Baker(editor, bake).add(made.places, made);
 		if (!outputs.empty())
 		{
 			files.push_back(editor.take(output, bake.record));

@@ -1,0 +1,448 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Adds vertices to the primitives of a glTF file, and splits their triangles.
+#include "core/lists.h"
+#include "scene/gltf_edit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace nook
+{
+namespace
+{
+
+using Document = GltfEditor::Document;
+
+template <class Whole> void appendWhole(std::string& bytes, double value)
+{
+	appendRaw(bytes, static_cast<Whole>(std::floor(value + 0.5)));
+}
+
+// The numbers of an accessor's elements, and of further ones.
+class Elements
+{
+public:
+	Elements(GltfEditor& editor, std::size_t accessor)
+		: m_editor(editor), m_item(editor.items("accessors")[accessor]), m_values(editor.file, accessor),
+		  m_component(numberIn(m_item, "componentType")), m_width(componentsOf(textIn(m_item, "type")))
+	{
+	}
+
+	std::size_t width() const
+	{
+		return m_width;
+	}
+
+	double number(uint32_t element, std::size_t i) const
+	{
+		return element < m_values.count() ? m_values.number(element, i) : m_further[(element - m_values.count()) * m_width + i];
+	}
+
+	void add(double number)
+	{
+		m_further.push_back(number);
+	}
+
+	// Turned vectors and rounded weights may exceed those of the others.
+	void dropBounds()
+	{
+		m_item.erase("min");
+		m_item.erase("max");
+	}
+
+	bool isWhole() const
+	{
+		return m_component != 5126 && !m_item.value("normalized", false);
+	}
+
+	// The greatest integer of the type; 1 for numbers that are not scaled to it.
+	double most() const
+	{
+		constexpr std::array<double, 4> kMost{127.0, 255.0, 32767.0, 65535.0}; // of 5120 and so on
+		return m_component == 5126 || isWhole() ? 1.0 : kMost[m_component - 5120];
+	}
+
+	// An accessor with all of them; copies have the same bytes.
+	std::size_t stored(const VertexPairs& added) const
+	{
+		std::string bytes;
+		for (std::size_t i = 0; i < m_values.count() + added.size(); ++i)
+		{
+			const auto [a, b] =
+				i < m_values.count() ? std::pair(static_cast<uint32_t>(i), static_cast<uint32_t>(i)) : added[i - m_values.count()];
+			if (a == b && a < m_values.count())
+			{
+				m_values.append(bytes, a);
+			}
+			for (std::size_t k = 0; k < m_width && (a != b || a >= m_values.count()); ++k)
+			{
+				append(bytes, number(static_cast<uint32_t>(i), k) * most());
+			}
+			padTo4(bytes);
+		}
+		Document item = m_item;
+		const std::size_t made = m_editor.addAccessor(textIn(item, "type"), m_component, m_values.count() + added.size(), bytes);
+		item.erase("sparse");
+		item.update(m_editor.items("accessors")[made]);
+		m_editor.items("accessors")[made] = std::move(item);
+		return made;
+	}
+
+private:
+	void append(std::string& bytes, double value) const
+	{
+		switch (m_component)
+		{
+		case 5120: appendWhole<int8_t>(bytes, value); break;
+		case 5121: appendWhole<uint8_t>(bytes, value); break;
+		case 5122: appendWhole<int16_t>(bytes, value); break;
+		case 5123: appendWhole<uint16_t>(bytes, value); break;
+		case 5125: appendWhole<uint32_t>(bytes, value); break;
+		default: appendRaw(bytes, static_cast<float>(value));
+		}
+	}
+
+	GltfEditor& m_editor;
+	Document m_item;
+	const GltfValues m_values;
+	const uint64_t m_component;
+	const std::size_t m_width;
+	std::vector<double> m_further;
+};
+
+// Means of two elements. `name`: of the attribute; empty for morph targets, whose normals are differences.
+void addMeans(Elements& elements, const std::string& name, const VertexPairs& added)
+{
+	const bool is_unit = name == "NORMAL" || name == "TANGENT";
+	bool any_turns = false;
+	const bool is_first = name.starts_with("_") && elements.isWhole();
+	for (const auto& [a, b] : added)
+	{
+		std::array<double, 16> mean{};
+		double square = 0.0;
+		for (std::size_t i = 0; i < elements.width(); ++i)
+		{
+			const bool keeps = is_first || (is_unit && i == 3); // the handedness of a tangent
+			mean[i] = keeps ? elements.number(a, i) : 0.5 * (elements.number(a, i) + elements.number(b, i));
+			square += i < 3 ? mean[i] * mean[i] : 0.0;
+		}
+		const double length = std::sqrt(square);
+		for (std::size_t i = 0; i < elements.width(); ++i)
+		{
+			const bool turns = is_unit && i < 3 && a != b;
+			any_turns = any_turns || turns;
+			elements.add(!turns ? mean[i] : length > 1e-6 ? mean[i] / length : elements.number(a, i));
+		}
+	}
+	any_turns ? elements.dropBounds() : void();
+}
+
+// Joints and weights of a vertex between two: those with the largest mean weights, with the same sum.
+class Skin
+{
+public:
+	Skin(GltfEditor& editor, const Document& attributes)
+	{
+		for (std::size_t set = 0; attributes.contains(name("JOINTS_", set)) && attributes.contains(name("WEIGHTS_", set)); ++set)
+		{
+			m_joints.emplace_back(editor, numberIn(attributes, name("JOINTS_", set))).dropBounds();
+			m_weights.emplace_back(editor, numberIn(attributes, name("WEIGHTS_", set))).dropBounds();
+		}
+	}
+
+	void add(uint32_t a, uint32_t b)
+	{
+		std::map<double, double> weight_of; // by joint
+		double sum = 0.0;
+		for (const uint32_t vertex : {a, b})
+		{
+			for (std::size_t i = 0; i < 4 * m_joints.size(); ++i)
+			{
+				const double weight = 0.5 * m_weights[i / 4].number(vertex, i % 4);
+				weight_of[m_joints[i / 4].number(vertex, i % 4)] += weight;
+				sum += weight;
+			}
+		}
+		std::vector<std::pair<double, double>> sorted; // weight, joint
+		for (const auto& [joint, weight] : weight_of)
+		{
+			sorted.emplace_back(weight, weight > 0.0 ? joint : 0.0);
+		}
+		std::stable_sort(sorted.begin(), sorted.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+		sorted.resize(4 * m_joints.size());
+		double kept = 0.0;
+		for (const auto& [weight, joint] : sorted)
+		{
+			kept += weight;
+		}
+		double rest = sum; // integers keep the sum: the first gets what rounding leaves
+		for (auto& [weight, joint] : sorted)
+		{
+			const double most = m_weights[0].most();
+			weight = kept > 0.0 ? weight * sum / kept : 0.0;
+			weight = most > 1.0 ? std::floor(weight * most + 0.5) / most : weight;
+			rest -= weight;
+		}
+		sorted.front().first += m_weights[0].most() > 1.0 ? rest : 0.0;
+		for (std::size_t i = 0; i < sorted.size(); ++i)
+		{
+			m_weights[i / 4].add(sorted[i].first);
+			m_joints[i / 4].add(sorted[i].second);
+		}
+	}
+
+	void store(Document& attributes, const VertexPairs& added)
+	{
+		for (std::size_t set = 0; set < m_joints.size(); ++set)
+		{
+			attributes[name("JOINTS_", set)] = m_joints[set].stored(added);
+			attributes[name("WEIGHTS_", set)] = m_weights[set].stored(added);
+		}
+	}
+
+	bool isEmpty() const
+	{
+		return m_joints.empty();
+	}
+
+private:
+	static std::string name(const char* kind, std::size_t set)
+	{
+		return kind + std::to_string(set);
+	}
+
+	std::vector<Elements> m_joints;
+	std::vector<Elements> m_weights;
+};
+
+// A node's vertices that some of its primitives share.
+struct Pool
+{
+	std::map<std::pair<uint32_t, uint32_t>, uint32_t> middles; // of two vertices
+	VertexPairs added;
+	Document attributes; // with the added ones
+	Document targets;
+};
+
+// A place's triangles after the split.
+struct SplitPlace
+{
+	std::size_t place = 0;
+	Pool* pool = nullptr;
+	std::vector<uint32_t> indices;
+};
+
+std::array<uint32_t, 3> sorted(glm::uvec3 triangle)
+{
+	std::array<uint32_t, 3> key{triangle.x, triangle.y, triangle.z};
+	std::sort(key.begin(), key.end());
+	return key;
+}
+
+class Splitter
+{
+public:
+	Splitter(GltfEditor& editor, std::vector<GltfPlace>& places, const GltfSplit& split)
+		: m_editor(editor), m_places(places), m_split(split), m_first(split.before.size() + 1, split.after.size())
+	{
+		for (std::size_t i = split.after.size(); i-- > 0;)
+		{
+			m_first[split.how->origins[i]] = i;
+		}
+		for (std::size_t t = 0; t < split.before.size(); ++t)
+		{
+			if (m_first[t + 1] - m_first[t] > 1)
+			{
+				m_parents.emplace(sorted(split.before[t]), t);
+			}
+		}
+	}
+
+	std::size_t run()
+	{
+		std::vector<SplitPlace> all;
+		for (std::size_t i = 0; i < m_places.size(); ++i)
+		{
+			if (SplitPlace made = splitOf(i); made.pool != nullptr)
+			{
+				all.push_back(std::move(made));
+			}
+		}
+		for (const Document& node : m_editor.items("nodes"))
+		{
+			m_users[numberIn(node, "mesh")] += 1;
+		}
+		std::for_each(all.begin(), all.end(), [this](const SplitPlace& made) { put(made); });
+		m_editor.settle();
+		return m_copies;
+	}
+
+private:
+	Document& primitiveOf(const GltfPlace& place)
+	{
+		return m_editor.items("meshes")[numberIn(m_editor.items("nodes")[place.node], "mesh")]["primitives"][place.primitive];
+	}
+
+	SplitPlace splitOf(std::size_t number)
+	{
+		GltfPlace& place = m_places[number];
+		std::vector<uint32_t> of_level(place.count, UINT32_MAX);
+		for (const auto& [vertex, in_level] : place.vertices)
+		{
+			of_level[vertex] = in_level;
+		}
+		SplitPlace made{number, nullptr, {}};
+		std::map<uint32_t, uint32_t> added; // vertices of the level
+		for (const glm::uvec3 file : place.corners)
+		{
+			const glm::uvec3 corner(of_level[file.x], of_level[file.y], of_level[file.z]);
+			const auto parent = m_parents.find(sorted(corner));
+			if (parent == m_parents.end())
+			{
+				made.indices.insert(made.indices.end(), {file.x, file.y, file.z});
+				continue;
+			}
+			made.pool = made.pool == nullptr ? &poolOf(place) : made.pool;
+			const std::size_t t = parent->second;
+			const glm::uvec3 before = m_split.before[t];
+			const bool same = before == corner || before == glm::uvec3(corner.y, corner.z, corner.x) ||
+							  before == glm::uvec3(corner.z, corner.x, corner.y);
+			for (std::size_t part = m_first[t]; part < m_first[t + 1]; ++part)
+			{
+				const glm::uvec3 after = m_split.after[part];
+				for (const uint32_t vertex : {after.x, same ? after.y : after.z, same ? after.z : after.y})
+				{
+					made.indices.push_back(inFile(vertex, corner, file, place, *made.pool));
+					added.emplace(vertex, made.indices.back());
+				}
+			}
+		}
+		for (const auto& [in_level, vertex] : added)
+		{
+			if (in_level >= m_split.vertices)
+			{
+				place.vertices.emplace_back(vertex, in_level);
+			}
+		}
+		return made;
+	}
+
+	// The number of one of the level's vertices that lies on a triangle.
+	uint32_t inFile(uint32_t vertex, glm::uvec3 corner, glm::uvec3 file, const GltfPlace& place, Pool& pool)
+	{
+		for (int k = 0; k < 3; ++k)
+		{
+			if (vertex == corner[k])
+			{
+				return file[k];
+			}
+		}
+		const auto [from, to] = m_split.how->middles[vertex - m_split.vertices];
+		const uint32_t a = inFile(from, corner, file, place, pool);
+		const uint32_t b = inFile(to, corner, file, place, pool);
+		const auto [at, is_new] =
+			pool.middles.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<uint32_t>(place.count + pool.added.size()));
+		if (is_new)
+		{
+			pool.added.emplace_back(at->first);
+		}
+		return at->second;
+	}
+
+	Pool& poolOf(const GltfPlace& place)
+	{
+		const Document& primitive = primitiveOf(place);
+		return m_pools[{place.node, primitive["attributes"].dump() + primitive.value("targets", Document()).dump()}];
+	}
+
+	void put(const SplitPlace& made)
+	{
+		GltfPlace& place = m_places[made.place];
+		const std::size_t mesh = numberIn(m_editor.items("nodes")[place.node], "mesh");
+		if (m_own.insert(place.node).second && m_users[mesh] > 1)
+		{
+			m_users[mesh] -= 1;
+			Document copy = m_editor.items("meshes")[mesh];
+			m_editor.items("nodes")[place.node]["mesh"] = m_editor.items("meshes").size();
+			m_editor.items("meshes").push_back(std::move(copy));
+			m_copies += 1;
+		}
+		Document primitive = primitiveOf(place);
+		if (made.pool->attributes.is_null())
+		{
+			addVertices(m_editor, primitive, made.pool->added);
+			made.pool->attributes = primitive["attributes"];
+			made.pool->targets = primitive.value("targets", Document());
+		}
+		primitive["attributes"] = made.pool->attributes;
+		if (!made.pool->targets.is_null())
+		{
+			primitive["targets"] = made.pool->targets;
+		}
+		const std::string bytes(reinterpret_cast<const char*>(made.indices.data()), 4 * made.indices.size());
+		primitive["indices"] = m_editor.addAccessor("SCALAR", 5125, made.indices.size(), bytes, true);
+		primitive["mode"] = 4U;
+		place.count += made.pool->added.size();
+		primitiveOf(place) = std::move(primitive);
+	}
+
+	GltfEditor& m_editor;
+	std::vector<GltfPlace>& m_places;
+	const GltfSplit& m_split;
+	std::vector<std::size_t> m_first;                            // part of each triangle before
+	std::map<std::array<uint32_t, 3>, std::size_t> m_parents;    // split triangles, by their corners
+	std::map<std::pair<std::size_t, std::string>, Pool> m_pools; // by node and attributes
+	std::map<std::size_t, std::size_t> m_users;                  // nodes of each mesh
+	std::set<std::size_t> m_own;                                 // nodes whose mesh is theirs alone
+	std::size_t m_copies = 0;
+};
+
+} // namespace
+
+void addVertices(GltfEditor& editor, Document& primitive, const VertexPairs& added)
+{
+	if (added.empty())
+	{
+		return;
+	}
+	Document& attributes = primitive["attributes"];
+	Skin skin(editor, attributes);
+	const auto extend = [&](Document& accessor, const std::string& name)
+	{
+		Elements elements(editor, accessor.get<std::size_t>());
+		addMeans(elements, name, added);
+		accessor = elements.stored(added);
+	};
+	for (const auto& attribute : attributes.items())
+	{
+		const bool of_skin = attribute.key().starts_with("JOINTS_") || attribute.key().starts_with("WEIGHTS_");
+		if (!of_skin || skin.isEmpty())
+		{
+			extend(attribute.value(), attribute.key());
+		}
+	}
+	for (std::size_t i = 0; i < added.size() && !skin.isEmpty(); ++i)
+	{
+		skin.add(added[i].first, added[i].second);
+	}
+	skin.store(attributes, added);
+	Document none = Document::array();
+	for (Document& target : primitive.contains("targets") ? primitive["targets"] : none)
+	{
+		for (Document& accessor : target)
+		{
+			extend(accessor, "");
+		}
+	}
+}
+
+std::size_t splitTriangles(GltfEditor& editor, std::vector<GltfPlace>& places, const GltfSplit& split)
+{
+	return Splitter(editor, places, split).run();
+}
+
+} // namespace nook

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Adds vertices to the primitives of a glTF file, and splits their triangles.
-#include "core/lists.h"
-#include "scene/gltf_edit.h"
+#include "scene/gltf_bake.h"
 
 #include <algorithm>
 #include <array>
@@ -272,13 +271,14 @@ public:
 				all.push_back(std::move(made));
 			}
 		}
-		for (const Document& node : m_editor.items("nodes"))
+		OwnMeshes own(m_editor);
+		for (const SplitPlace& made : all)
 		{
-			m_users[numberIn(node, "mesh")] += 1;
+			own.meshOf(m_places[made.place].node);
+			put(made);
 		}
-		std::for_each(all.begin(), all.end(), [this](const SplitPlace& made) { put(made); });
 		m_editor.settle();
-		return m_copies;
+		return own.copies;
 	}
 
 private:
@@ -362,15 +362,6 @@ private:
 	void put(const SplitPlace& made)
 	{
 		GltfPlace& place = m_places[made.place];
-		const std::size_t mesh = numberIn(m_editor.items("nodes")[place.node], "mesh");
-		if (m_own.insert(place.node).second && m_users[mesh] > 1)
-		{
-			m_users[mesh] -= 1;
-			Document copy = m_editor.items("meshes")[mesh];
-			m_editor.items("nodes")[place.node]["mesh"] = m_editor.items("meshes").size();
-			m_editor.items("meshes").push_back(std::move(copy));
-			m_copies += 1;
-		}
 		Document primitive = primitiveOf(place);
 		if (made.pool->attributes.is_null())
 		{
@@ -396,9 +387,6 @@ private:
 	std::vector<std::size_t> m_first;                            // part of each triangle before
 	std::map<std::array<uint32_t, 3>, std::size_t> m_parents;    // split triangles, by their corners
 	std::map<std::pair<std::size_t, std::string>, Pool> m_pools; // by node and attributes
-	std::map<std::size_t, std::size_t> m_users;                  // nodes of each mesh
-	std::set<std::size_t> m_own;                                 // nodes whose mesh is theirs alone
-	std::size_t m_copies = 0;
 };
 
 } // namespace

@@ -114,9 +114,9 @@ struct BakeFile
 	std::vector<GltfPlace> places;
 };
 
-// `as_read`: becomes the level before it was cleaned, whose vertices the places then have.
-BakeFile fileOf(const BakeOptions& options, const BakeInput& input, const Level& level, const RunSettings& how,
-				Level* as_read = nullptr)
+// Throws if it cannot take the bake. `as_read`: becomes the level before it was cleaned, whose vertices the places then have.
+BakeFile fileOf(const BakeOptions& options, const BakeInput& input, const Level& level, const GltfBake& bake,
+				const RunSettings& how, Level* as_read = nullptr)
 {
 	BakeFile made;
 	if (input.in_place)
@@ -130,6 +130,7 @@ BakeFile fileOf(const BakeOptions& options, const BakeInput& input, const Level&
 		made.file = openGlb(levelGlb(level, kProgram, made.places), level.name);
 		std::erase_if(made.places, [&input](const GltfPlace& place) { return input.part && input.receivers[place.triangle] == 0; });
 	}
+	checkTarget(made.file, made.places, bake);
 	const bool maps = input.part && (as_read == nullptr);
 	for (std::size_t i = 0; maps && i < made.places.size(); ++i)
 	{
@@ -227,12 +228,11 @@ Made makeVertices(const BakeOptions& options, const BakeInput& input, Facts& fac
 	BakeSettings settings = options.settings;
 	const Level& receiving = input.part ? input.part->level : input.level();
 	settings.receivers = &receiving;
-	BakeFile target = fileOf(options, input, input.level(), how);
 	GltfBake in = bakeOf(options);
 	VertexBake bake;
 	const bool splits = settings.max_error > 0.0 && (input.in_place || input.part);
 	in.split.how = splits ? &bake.split : nullptr;
-	checkTarget(target.file, target.places, in);
+	BakeFile target = fileOf(options, input, input.level(), in, how);
 	bake = bakeVertices(input.tracer, settings, how);
 	std::vector<glm::uvec3> split; // triangles
 	if (splits)
@@ -242,7 +242,7 @@ Made makeVertices(const BakeOptions& options, const BakeInput& input, Facts& fac
 	}
 	else if (bake.refined)
 	{
-		target = fileOf(options, input, *bake.refined, how);
+		target = fileOf(options, input, *bake.refined, in, how);
 	}
 	std::optional<Level> turned;
 	if (!input.turned.empty())
@@ -338,12 +338,11 @@ void addTextureFiles(const BakeOptions& options, const std::vector<TextureBake>&
 Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& facts, const RunSettings& how)
 {
 	Level as_read;
-	const auto [file, places] = fileOf(options, input, input.level(), how, &as_read);
 	GltfBake in = bakeOf(options);
-	in.charts.resize(places.size());
-	checkTarget(file, places, in);
+	in.charts.resize(1);
+	const BakeFile target = fileOf(options, input, input.level(), in, how, &as_read);
 	const Level& level = input.in_place ? as_read : input.level();
-	const Unwrapped unwrapped = unwrap(level, piecesOf(places), options.charts, how);
+	const Unwrapped unwrapped = unwrap(level, piecesOf(target.places), options.charts, how);
 	BakeSettings settings = options.settings;
 	const auto marksOf = [&](const auto& isWanted)
 	{
@@ -366,13 +365,10 @@ Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& fa
 	{
 		return {};
 	}
-	in.charts = chartsOf(places, unwrapped);
+	in.charts = chartsOf(target.places, unwrapped);
 	in.pages = mapped(pages, pngOf);
 	Made made;
-	std::vector<std::string> outputs = options.outputs.files;
-	std::erase_if(outputs, isTextureName);
-	outputs.resize(std::max<std::size_t>(outputs.size(), 1), "-");
-	GltfBaked baked = bakeInto(file, places, in, outputs);
+	const GltfBaked baked = write(options, target, level, in, made);
 	facts.text("coordinates", "unwrapped");
 	facts.whole("pages", unwrapped.pages);
 	facts.number("texel_size_m", unwrapped.texel_m);
@@ -386,7 +382,6 @@ Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& fa
 									[](std::size_t all, const std::string& png) { return all + png.size(); }));
 	addBakeCheck(facts, options, check, "points of the surface");
 	addFile(facts, input, baked);
-	made.bytes = std::move(baked.files);
 	addTextureFiles(options, pages, made);
 	return made;
 }
@@ -416,9 +411,8 @@ Made makeTexture(const BakeOptions& options, const BakeInput& input, Facts& fact
 		}
 	}
 	const std::vector<glm::vec2>& uvs = of_file.empty() ? level.uvs : of_file;
-	const BakeFile target = fileOf(options, input, input.level(), how);
 	GltfBake in = bakeOf(options);
-	checkTarget(target.file, target.places, in);
+	const BakeFile target = fileOf(options, input, input.level(), in, how);
 	std::vector<TextureBake> pages{bakeTexture(input.tracer, uvs, options.texture_px, settings, how)};
 	finishTextures(level, uvs, {}, pages, how.threads);
 	const BakeCheck check = checkTexture(input.tracer, uvs, pages, {}, settings, kCheckPoints, how);

@@ -236,38 +236,28 @@ std::vector<GltfCharts> chartsOf(std::span<const GltfPlace> places, const Unwrap
 		GltfCharts& made = charts.emplace_back();
 		made.uvs.resize(place.count, glm::vec2(0.0F));
 		made.pages.resize(unwrapped.pages);
-		std::unordered_map<uint32_t, std::pair<uint32_t, bool>> of_file; // vertices, and whether a chart has them
-		for (const auto& [vertex, of_level] : place.vertices)
-		{
-			of_file[of_level] = {vertex, false};
-		}
+		std::vector<bool> is_taken(place.count, false); // by a chart
 		std::size_t page = 0;
-		for (const std::size_t end = triangle + place.triangles.size(); triangle < end; ++triangle)
+		for (const glm::uvec3 file : place.corners)
 		{
-			glm::uvec3 corners = unwrapped.level.triangles[triangle];
+			const glm::uvec3 corner = unwrapped.level.triangles[triangle];
+			page = unwrapped.page_of[triangle] == kNoPage ? page : unwrapped.page_of[triangle];
+			triangle += 1;
 			for (int k = 0; k < 3; ++k)
 			{
-				uint32_t& corner = corners[k];
-				uint32_t& to = number[corner];
-				if (to == kNoIndex)
+				const uint32_t v = corner[place.mirrored ? (3 - k) % 3 : k];
+				if (number[v] == kNoIndex)
 				{
-					auto& [vertex, is_taken] = of_file.at(unwrapped.vertex_of[corner]);
-					to = is_taken ? static_cast<uint32_t>(made.uvs.size()) : vertex;
-					if (is_taken)
+					number[v] = is_taken[file[k]] ? static_cast<uint32_t>(made.uvs.size()) : file[k];
+					if (is_taken[file[k]])
 					{
-						made.copied.emplace_back(vertex, vertex);
+						made.copied.emplace_back(file[k], file[k]);
 						made.uvs.emplace_back();
 					}
-					is_taken = true;
-					made.uvs[to] = unwrapped.level.uvs[corner];
+					is_taken[file[k]] = true;
+					made.uvs[number[v]] = unwrapped.level.uvs[v];
 				}
-				corner = to;
-			}
-			page = unwrapped.page_of[triangle] == kNoPage ? page : unwrapped.page_of[triangle];
-			for (const uint32_t corner :
-				 {corners.x, place.mirrored ? corners.z : corners.y, place.mirrored ? corners.y : corners.z})
-			{
-				made.pages[page].push_back(corner);
+				made.pages[page].push_back(number[v]);
 			}
 		}
 	}

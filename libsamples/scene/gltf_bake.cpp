@@ -60,17 +60,6 @@ bool merge(std::vector<float>& numbers, const std::vector<float>& other)
 	return all_fit;
 }
 
-// `value` is 0 to 1 if the component type is an integer.
-void appendComponent(std::string& bytes, uint64_t component, float value)
-{
-	switch (component)
-	{
-	case 5126: appendRaw(bytes, value); break;
-	case 5123: appendRaw(bytes, static_cast<uint16_t>(value * 65535.0F + 0.5F)); break;
-	default: appendRaw(bytes, static_cast<uint8_t>(value * 255.0F + 0.5F));
-	}
-}
-
 class Baker
 {
 public:
@@ -362,7 +351,7 @@ private:
 			for (std::size_t i = 0; i < channels; ++i)
 			{
 				const float before = i < given ? static_cast<float>(base->number(v, i)) : 1.0F;
-				appendComponent(bytes, component, (i == 3) == alpha ? before * value : before);
+				appendComponent(bytes, component, static_cast<double>((i == 3) == alpha ? before * value : before), true);
 			}
 			padTo4(bytes);
 		}

@@ -35,6 +35,9 @@ inline std::string setName(int set)
 
 int firstFreeSet(const GltfEditor::Document& attributes);
 
+// A number as one of that component type. `normalized`: 1 is the greatest integer.
+void appendComponent(std::string& bytes, uint64_t component, double value, bool normalized);
+
 // The meshes of nodes that have no values.
 std::set<std::size_t> meshesOfOthers(GltfEditor& editor, const std::vector<MeshUnit>& units);
 

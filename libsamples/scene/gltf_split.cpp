@@ -16,6 +16,13 @@ namespace
 
 using Document = GltfEditor::Document;
 
+// The integer that stands for 1 in normalised components.
+double oneOf(uint64_t component)
+{
+	constexpr std::array<double, 4> kOnes{127.0, 255.0, 32767.0, 65535.0}; // of 5120 and so on
+	return component == 5126 ? 1.0 : kOnes[component - 5120];
+}
+
 template <class Whole> void appendWhole(std::string& bytes, double value)
 {
 	appendRaw(bytes, static_cast<Whole>(std::floor(value + 0.5)));
@@ -58,11 +65,10 @@ public:
 		return m_component != 5126 && !m_item.value("normalized", false);
 	}
 
-	// The greatest integer of the type; 1 for numbers that are not scaled to it.
-	double most() const
+	// The integer that stands for 1; 1 for numbers that are not scaled.
+	double one() const
 	{
-		constexpr std::array<double, 4> kMost{127.0, 255.0, 32767.0, 65535.0}; // of 5120 and so on
-		return m_component == 5126 || isWhole() ? 1.0 : kMost[m_component - 5120];
+		return isWhole() ? 1.0 : oneOf(m_component);
 	}
 
 	// An accessor with all of them; copies have the same bytes.
@@ -79,7 +85,7 @@ public:
 			}
 			for (std::size_t k = 0; k < m_width && (a != b || a >= m_values.count()); ++k)
 			{
-				append(bytes, number(static_cast<uint32_t>(i), k) * most());
+				appendComponent(bytes, m_component, number(static_cast<uint32_t>(i), k), !isWhole());
 			}
 			padTo4(bytes);
 		}
@@ -92,19 +98,6 @@ public:
 	}
 
 private:
-	void append(std::string& bytes, double value) const
-	{
-		switch (m_component)
-		{
-		case 5120: appendWhole<int8_t>(bytes, value); break;
-		case 5121: appendWhole<uint8_t>(bytes, value); break;
-		case 5122: appendWhole<int16_t>(bytes, value); break;
-		case 5123: appendWhole<uint16_t>(bytes, value); break;
-		case 5125: appendWhole<uint32_t>(bytes, value); break;
-		default: appendRaw(bytes, static_cast<float>(value));
-		}
-	}
-
 	GltfEditor& m_editor;
 	Document m_item;
 	const GltfValues m_values;
@@ -181,12 +174,12 @@ public:
 		double rest = sum; // integers keep the sum: the first gets what rounding leaves
 		for (auto& [weight, joint] : sorted)
 		{
-			const double most = m_weights[0].most();
+			const double one = m_weights[0].one();
 			weight = kept > 0.0 ? weight * sum / kept : 0.0;
-			weight = most > 1.0 ? std::floor(weight * most + 0.5) / most : weight;
+			weight = one > 1.0 ? std::floor(weight * one + 0.5) / one : weight;
 			rest -= weight;
 		}
-		sorted.front().first += m_weights[0].most() > 1.0 ? rest : 0.0;
+		sorted.front().first += m_weights[0].one() > 1.0 ? rest : 0.0;
 		for (std::size_t i = 0; i < sorted.size(); ++i)
 		{
 			m_weights[i / 4].add(sorted[i].first);
@@ -223,8 +216,7 @@ struct Pool
 {
 	std::map<std::pair<uint32_t, uint32_t>, uint32_t> middles; // of two vertices
 	VertexPairs added;
-	Document attributes; // with the added ones
-	Document targets;
+	Document arrays; // attributes and targets with the added ones
 };
 
 // A place's triangles after the split.
@@ -296,7 +288,8 @@ private:
 			of_level[vertex] = in_level;
 		}
 		SplitPlace made{number, nullptr, {}};
-		std::map<uint32_t, uint32_t> added; // vertices of the level
+		Pool& pool = m_pools[{place.node, arraysOf(primitiveOf(place)).dump()}];
+		std::set<std::pair<uint32_t, uint32_t>> added; // numbers in the primitive, and in the level
 		for (const glm::uvec3 file : place.corners)
 		{
 			const glm::uvec3 corner(of_level[file.x], of_level[file.y], of_level[file.z]);
@@ -306,7 +299,7 @@ private:
 				made.indices.insert(made.indices.end(), {file.x, file.y, file.z});
 				continue;
 			}
-			made.pool = made.pool == nullptr ? &poolOf(place) : made.pool;
+			made.pool = &pool;
 			const std::size_t t = parent->second;
 			const glm::uvec3 before = m_split.before[t];
 			const bool same = before == corner || before == glm::uvec3(corner.y, corner.z, corner.x) ||
@@ -316,18 +309,15 @@ private:
 				const glm::uvec3 after = m_split.after[part];
 				for (const uint32_t vertex : {after.x, same ? after.y : after.z, same ? after.z : after.y})
 				{
-					made.indices.push_back(inFile(vertex, corner, file, place, *made.pool));
-					added.emplace(vertex, made.indices.back());
+					made.indices.push_back(inFile(vertex, corner, file, place, pool));
+					if (vertex >= m_split.vertices)
+					{
+						added.emplace(made.indices.back(), vertex);
+					}
 				}
 			}
 		}
-		for (const auto& [in_level, vertex] : added)
-		{
-			if (in_level >= m_split.vertices)
-			{
-				place.vertices.emplace_back(vertex, in_level);
-			}
-		}
+		place.vertices.insert(place.vertices.end(), added.begin(), added.end());
 		return made;
 	}
 
@@ -353,27 +343,26 @@ private:
 		return at->second;
 	}
 
-	Pool& poolOf(const GltfPlace& place)
+	static Document arraysOf(const Document& primitive)
 	{
-		const Document& primitive = primitiveOf(place);
-		return m_pools[{place.node, primitive["attributes"].dump() + primitive.value("targets", Document()).dump()}];
+		Document arrays{{"attributes", primitive["attributes"]}};
+		if (primitive.contains("targets"))
+		{
+			arrays["targets"] = primitive["targets"];
+		}
+		return arrays;
 	}
 
 	void put(const SplitPlace& made)
 	{
 		GltfPlace& place = m_places[made.place];
 		Document primitive = primitiveOf(place);
-		if (made.pool->attributes.is_null())
+		if (made.pool->arrays.is_null())
 		{
-			addVertices(m_editor, primitive, made.pool->added);
-			made.pool->attributes = primitive["attributes"];
-			made.pool->targets = primitive.value("targets", Document());
+			made.pool->arrays = arraysOf(primitive);
+			addVertices(m_editor, made.pool->arrays, made.pool->added);
 		}
-		primitive["attributes"] = made.pool->attributes;
-		if (!made.pool->targets.is_null())
-		{
-			primitive["targets"] = made.pool->targets;
-		}
+		primitive.update(made.pool->arrays);
 		const std::string bytes(reinterpret_cast<const char*>(made.indices.data()), 4 * made.indices.size());
 		primitive["indices"] = m_editor.addAccessor("SCALAR", 5125, made.indices.size(), bytes, true);
 		primitive["mode"] = 4U;
@@ -390,6 +379,20 @@ private:
 };
 
 } // namespace
+
+void appendComponent(std::string& bytes, uint64_t component, double value, bool normalized)
+{
+	value *= normalized ? oneOf(component) : 1.0;
+	switch (component)
+	{
+	case 5120: appendWhole<int8_t>(bytes, value); break;
+	case 5121: appendWhole<uint8_t>(bytes, value); break;
+	case 5122: appendWhole<int16_t>(bytes, value); break;
+	case 5123: appendWhole<uint16_t>(bytes, value); break;
+	case 5125: appendWhole<uint32_t>(bytes, value); break;
+	default: appendRaw(bytes, static_cast<float>(value));
+	}
+}
 
 void addVertices(GltfEditor& editor, Document& primitive, const VertexPairs& added)
 {

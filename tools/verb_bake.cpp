@@ -269,12 +269,12 @@ Made makeVertices(const BakeOptions& options, const BakeInput& input, Facts& fac
 	}
 	for (const auto& [name, values] : {std::pair("visibility", &bake.visibility), {"back", &bake.back}})
 	{
-		const std::vector<float> all = spread(input, *values);
+		const std::vector<float> all = bake.refined ? *values : spread(input, *values);
 		give<float>(name, all, {all.size()});
 	}
 	for (const auto& [name, values] : {std::pair("bent", &bake.bent), {"bent_back", &bake.bent_back}})
 	{
-		const std::vector<glm::vec3> all = spread(input, *values);
+		const std::vector<glm::vec3> all = bake.refined ? *values : spread(input, *values);
 		give<float>(name, all, {all.size(), 3});
 	}
 	if (bake.refined)

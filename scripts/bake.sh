@@ -36,7 +36,7 @@ while [ $# -gt 0 ]; do
 	row "$1" 'at the vertices' --radius "$2" --fit points
 	row "$1" fitted --radius "$2"
 	row "$1" 'fitted, `--max-error 0.1`' --radius "$2" --max-error 0.1 --max-vertices 400000
-	mv "$folder/b.glb" "$folder/refined.glb"
+	"$nook" level "$folder/b.glb" -o "$folder/refined.glb" # bakes of b.glb would undo the split first
 	row "$folder/refined.glb" 'at the vertices of that' --radius "$2" --fit points
 	shift 2
 done

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: bake_materials_test.sh PROGRAM. nook bake: materials of formats other than glTF, values in the order of their files, occlusion
-# in the red channel of metallic-roughness textures, parts by extras of materials, and skies.
+# in the red channel of metallic-roughness textures, split triangles, parts by extras of materials, and skies.
 set -u
 nook=$1
 source=$(cd "$(dirname "$0")/.." && pwd)
@@ -272,6 +272,110 @@ fails 5 'kept_deep.gltf: textures\[0\]: found more than 8 bits per channel' bake
 sed 's/"source": 0,/"extensions": {"EXT_texture_webp": {"source": 0}},/' kept_orm.gltf >kept_webp.gltf
 fails 5 'kept_webp.gltf: textures\[0\]: found no image of the core format' bake kept_webp.gltf --radius 1 --rays 1 --to texture:orm --texture 16 -o o.glb
 fails 1 '--to: found' bake kept_orm.gltf --radius 1 --to texture:red -o o.glb
+# The file is checked before the first ray.
+: >kept_set.log >kept_deep.log
+fails 3 'kept_orm.gltf: TEXCOORD_0: found it in use' bake kept_orm.gltf --radius 1 --to texcoord:0 -o o.glb --progress kept_set.log
+fails 5 'kept_deep.gltf: textures\[0\]: found more than 8 bits' bake kept_deep.gltf --radius 1 --to texture:orm --texture 16 -o o.glb --progress kept_deep.log
+checks=$((checks + 1))
+grep -q '"places"' kept_set.log && ! grep -q '"rays"' kept_set.log kept_deep.log || problem "found rays in $(cat kept_set.log kept_deep.log)"
+
+# --max-error in the file itself: all attributes are interpolated. A wall stands on a floor, whose strip two nodes show, one of
+# them far away in a mirror; every attribute is a linear function of the position.
+PYTHONPATH=.. python3 - <<'EOT'
+import base64
+from files import *
+data, views, accessors = b'', [], []
+def add(kind, component, packing, rows, **more):
+    global data
+    packed = b''.join(struct.pack(packing, *row) for row in rows)
+    views.append({'buffer': 0, 'byteOffset': len(data), 'byteLength': len(packed), 'byteStride': len(packed) // len(rows)})
+    accessors.append({'bufferView': len(views) - 1, 'componentType': component, 'count': len(rows), 'type': kind, **more})
+    data += packed + b'\0' * (-len(packed) % 4)
+    return len(accessors) - 1
+floor = [(0, 0, 0), (0, 0, 4), (4, 0, 0), (4, 0, 4)]
+attributes = {
+    'POSITION': add('VEC3', 5126, '<3f', floor, min=[0, 0, 0], max=[4, 0, 4]), 'NORMAL': add('VEC3', 5126, '<3f', [(0, 1, 0)] * 4),
+    'TANGENT': add('VEC4', 5126, '<4f', [(1, 0, 0, -1)] * 4), 'TEXCOORD_0': add('VEC2', 5126, '<2f', [(x / 2, -z) for x, y, z in floor]),
+    'TEXCOORD_1': add('VEC2', 5123, '<2H', [(9999 * x, 5000 * z) for x, y, z in floor], normalized=True),
+    'COLOR_0': add('VEC4', 5121, '<4B', [(60 * x, 50 * z, 9, 255) for x, y, z in floor], normalized=True),
+    '_ID': add('SCALAR', 5123, '<Hxx', [(7 * i,) for i in range(4)]),
+    'JOINTS_0': add('VEC4', 5121, '<4B', [(x, 2 + z, 0, 0) for x, y, z in floor]),
+    'WEIGHTS_0': add('VEC4', 5121, '<4B', [(155, 100, 0, 0)] * 4, normalized=True)}
+target = add('VEC3', 5126, '<3f', [(z, x, 0) for x, y, z in floor], min=[0, 0, 0], max=[4, 4, 0])
+wall = add('VEC3', 5126, '<3f', [(2, 0, 1), (2, 0, 3), (2, 1, 1), (2, 1, 3)], min=[2, 0, 1], max=[2, 1, 3])
+document = {
+    'asset': {'version': '2.0'}, 'scenes': [{'nodes': [0, 1, 2]}],
+    'nodes': [{'mesh': 0, 'name': 'floor'}, {'mesh': 1, 'name': 'wall'}, {'mesh': 0, 'name': 'far', 'translation': [90, 0, 0], 'scale': [-1, 1, 1]}],
+    'meshes': [{'primitives': [{'attributes': attributes, 'mode': 5, 'targets': [{'POSITION': target}]}], 'weights': [0]},
+               {'primitives': [{'attributes': {'POSITION': wall}, 'mode': 5, 'material': 0}]}],
+    'materials': [{'doubleSided': True}], 'accessors': accessors, 'bufferViews': views,
+    'buffers': [{'byteLength': len(data), 'uri': 'data:;base64,' + base64.b64encode(data).decode()}]}
+json.dump(document, open('kept_split.gltf', 'w'))
+document['nodes'][0]['extensions'] = {'EXT_mesh_gpu_instancing': {'attributes': {'TRANSLATION': wall}}}
+document['extensionsUsed'] = ['EXT_mesh_gpu_instancing']
+json.dump(document, open('kept_placed.gltf', 'w'))
+EOT
+works '"file": "the level.s, with additions"' bake kept_split.gltf --radius 1 --rays 64 --max-error 0.03 --threads 1 -o split.glb -o split.csv --json -
+works '' bake kept_split.gltf --radius 1 --rays 64 --max-error 0.03 --threads 3 -o other.glb --json s.json
+works '' bake kept_split.gltf --radius 1 --rays 64 --max-error 0.005 --receivers far,wall --to color -o wall.glb --json s.json
+works '' bake split.glb --radius 1 --rays 64 -o again.glb --json s.json
+works '' bake kept_split.gltf --radius 1 --rays 64 -o plain.glb --json s.json
+works '' bake kept_shell.obj --radius 1 --rays 64 --max-error 0.005 --receivers thing -o thing.glb --json s.json
+checks=$((checks + 1))
+sed 's/bake kept_split.gltf/bake split.glb/' split.glb | cmp -s - split.glb && problem "split.glb: found another command in its record"
+LC_ALL=C sed 's/bake kept_split.gltf .* -o//' split.glb >a && LC_ALL=C sed 's/bake kept_split.gltf .* -o//' other.glb | cmp - a >../log || problem "--max-error: $(cat ../log)"
+PYTHONPATH=.. python3 - <<'EOT' >../log 2>&1 || problem "--max-error in the file: $(cat ../log)"
+from files import *
+def values(document, chunk, accessor):
+    item = document['accessors'][accessor]
+    view = document['bufferViews'][item['bufferView']]
+    kind, most = {5126: ('f', 1), 5123: ('H', 65535), 5121: ('B', 255), 5125: ('I', 1)}[item['componentType']]
+    packing = f"<{ {'SCALAR': 1, 'VEC2': 2, 'VEC3': 3, 'VEC4': 4}[item['type']]}{kind}"
+    start, stride = view.get('byteOffset', 0) + item.get('byteOffset', 0), view.get('byteStride', struct.calcsize(packing))
+    return [struct.unpack_from(packing, chunk, start + stride * i) for i in range(item['count'])]
+def area(p, triangles):
+    total = [0, 0, 0]
+    for a, b, c in triangles:
+        u, v = [[p[i][k] - p[a][k] for k in range(3)] for i in (b, c)]
+        total = [total[k] + (u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]) / 2 for k in range(3)]
+    return total
+document, chunk = glb('split.glb')
+assert [n['mesh'] for n in document['nodes']] == [2, 1, 0] and document['meshes'][0]['primitives'][0]['mode'] == 5
+primitive, = document['meshes'][2]['primitives']
+got = {name: values(document, chunk, i) for name, i in primitive['attributes'].items()}
+p, indices = got['POSITION'], [i for i, in values(document, chunk, primitive['indices'])]
+assert len(indices) > 60 and primitive['mode'] == 4 and set(indices) == set(range(len(p))), indices
+assert max(abs(a - b) for a, b in zip(area(p, zip(*[iter(indices)] * 3)), (0, 16, 0))) < 1e-5
+deltas = values(document, chunk, primitive['targets'][0]['POSITION'])
+for i, (x, y, z) in enumerate(p):
+    assert y == 0 and got['NORMAL'][i] == (0, 1, 0) and got['TANGENT'][i] == (1, 0, 0, -1) and deltas[i] == (z, x, 0)
+    assert got['TEXCOORD_0'][i] == (x / 2, -z) and got['_ID'][i][0] in (0, 7, 14, 21)
+    assert max(abs(a - b) for a, b in zip(got['TEXCOORD_1'][i], (9999 * x, 5000 * z))) <= 0.5
+    assert max(abs(a - b) for a, b in zip(got['COLOR_0'][i], (60 * x, 50 * z, 9, 255))) <= 0.5
+    assert sum(got['WEIGHTS_0'][i]) == 255 and len(set(got['JOINTS_0'][i])) >= 2, (got['WEIGHTS_0'][i], got['JOINTS_0'][i])
+middle = p.index((2, 0, 2))
+assert sorted(zip(got['JOINTS_0'][middle], got['WEIGHTS_0'][middle])) in ([(0, 78), (2, 50), (4, 77), (6, 50)], [(0, 77), (2, 50), (4, 78), (6, 50)]), \
+    (got['JOINTS_0'][middle], got['WEIGHTS_0'][middle])
+seen = got['_VISIBILITY']
+assert seen[middle][0] < 0.8 < seen[0][0], seen
+rows = [line.split(',') for line in open('split.csv').read().split()[1:]]
+assert sum(row[0] == '0' for row in rows) == len(p) and sum(row[0] == '2' for row in rows) == 4
+# Without --max-error the output is what it is without the bake before.
+again, plain = glb('again.glb')[0], glb('plain.glb')[0]
+assert again['meshes'] == plain['meshes'] and again['accessors'] == plain['accessors']
+# Parts that receive nothing are not split, and darken.
+document, chunk = glb('wall.glb')
+assert [n['mesh'] for n in document['nodes']] == [0, 1, 2] and 'indices' not in document['meshes'][0]['primitives'][0]
+wall = document['meshes'][1]['primitives'][0]
+assert len(values(document, chunk, wall['indices'])) > 6 and len(document['meshes'][0]['primitives'][0]['attributes']) == 9
+assert min(c[0] for c in values(document, chunk, wall['attributes']['COLOR_0'])) < 255
+document, chunk = glb('thing.glb')
+thing, other, shell = [m['primitives'][0] for m in document['meshes']]
+assert len(values(document, chunk, thing['indices'])) > 6 == len(values(document, chunk, other['indices'])), document['meshes']
+assert '_VISIBILITY' in thing['attributes'] and '_VISIBILITY' not in shell['attributes']
+EOT
+there a again.glb other.glb plain.glb s.json split.csv split.glb thing.glb wall.glb
+fails 5 'kept_placed.gltf: nodes.0.: found instances by EXT_mesh_gpu_instancing' bake kept_placed.gltf --radius 1 --max-error 0.1 -o o.glb
 
 # Parts by extras of materials, and a sky without a name.
 works '^triangles: 2$|triangles: 2,|"triangles": 2' bake kept_orm.gltf --radius 1 --rays 4 --ignore extras:physics=only --json -

@@ -92,6 +92,7 @@ struct VertexBake
 
 	// Results with max_error.
 	std::optional<Level> refined; // the level that the values belong to, if it was subdivided
+	LevelSplit split;             // how that was made
 	std::size_t above = 0;        // triangles whose error still exceeds it
 	double area_above_m2 = 0.0;   // their area
 	bool capped = false;          // stopped by max_vertices

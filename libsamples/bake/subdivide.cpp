@@ -160,7 +160,7 @@ using Part = std::array<PartCorner, 3>;
 class Splitter
 {
 public:
-	Splitter(Level& level, const EdgeMarks& marks) : m_level(level), m_marks(marks)
+	Splitter(Level& level, const EdgeMarks& marks, LevelSplit& split) : m_level(level), m_marks(marks)
 	{
 		for (std::size_t t = 0; t < level.triangles.size(); ++t)
 		{
@@ -177,7 +177,8 @@ public:
 		m_first = level.positions.size();
 		for (const uint64_t pair : m_pairs)
 		{
-			addMiddle(static_cast<uint32_t>(pair >> 32U), static_cast<uint32_t>(pair));
+			split.middles.emplace_back(static_cast<uint32_t>(pair >> 32U), static_cast<uint32_t>(pair));
+			addMiddle(split.middles.back().first, split.middles.back().second);
 		}
 	}
 
@@ -272,9 +273,10 @@ private:
 
 // Splits every triangle with marked edges at their midpoints into two, three or four of the same orientation, material and mesh.
 // Triangles that share an edge share its parts. Samples move to the triangles that contain them.
-void splitMarked(Level& level, std::vector<SurfaceSample>& samples, const EdgeMarks& marks)
+void splitMarked(Level& level, std::vector<SurfaceSample>& samples, const EdgeMarks& marks, LevelSplit& split)
 {
-	const Splitter splitter(level, marks);
+	const Splitter splitter(level, marks, split);
+	std::vector<uint32_t> origins;
 	std::vector<glm::uvec3> triangles;
 	std::vector<uint32_t> materials;
 	std::vector<SurfaceSample> moved;
@@ -311,6 +313,7 @@ void splitMarked(Level& level, std::vector<SurfaceSample>& samples, const EdgeMa
 			{
 				triangles.emplace_back(parts[i][0].vertex, parts[i][1].vertex, parts[i][2].vertex);
 				materials.push_back(level.materials[t]);
+				origins.push_back(split.origins[t]);
 				moved.insert(moved.end(), of_part[i].begin(), of_part[i].end());
 				of_part[i].clear();
 			}
@@ -320,6 +323,7 @@ void splitMarked(Level& level, std::vector<SurfaceSample>& samples, const EdgeMa
 	}
 	level.triangles = std::move(triangles);
 	level.materials = std::move(materials);
+	split.origins = std::move(origins);
 	samples = std::move(moved);
 }
 
@@ -478,6 +482,8 @@ VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const 
 	assert(settings.max_error > 0.0 && settings.fit == BakeFit::surface);
 	VertexBake bake;
 	Level& level = bake.refined.emplace(surfaceOf(tracer, settings));
+	bake.split.origins.resize(level.triangles.size());
+	std::iota(bake.split.origins.begin(), bake.split.origins.end(), 0U);
 	const int rays = std::min(settings.rays, kRaysOfPoint);
 	const std::vector<double> all_areas = areasOf(level);
 	const Density density = densityOf(tracer, settings, rays, std::accumulate(all_areas.begin(), all_areas.end(), 0.0));
@@ -510,7 +516,7 @@ VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const 
 		{
 			break;
 		}
-		splitMarked(level, samples, marks);
+		splitMarked(level, samples, marks, bake.split);
 		const auto seed = settings.seed + static_cast<uint32_t>(round) * 0x85ebca6bU; // a different sequence per round
 		bake.points += topUp(tracer, level, samples, density, rays, seed, settings, run);
 	}

@@ -48,14 +48,15 @@ struct Unwrapped
 	double stretch = 1.0;  // root mean square over the area, 1: none (P. Sander et al. 2001)
 };
 inline constexpr uint32_t kNoPage = UINT32_MAX;
+inline constexpr uint32_t kNoIndex = UINT32_MAX;
 
 // Triangles of a chart have the same orientation in the texture and do not overlap. Throws Error (invalid_input) if the pages are
 // too small. Same result for any thread count. Progress stages "charts" and "pages".
 Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const UnwrapSettings& settings, const RunSettings& run);
 
-// A glTF file's primitives at their places as pieces, and what they become. Throws Error (unsupported) for instances by
-// EXT_mesh_gpu_instancing, which share their coordinates; `name` is the file's.
-std::vector<UnwrapPiece> piecesOf(std::span<const GltfPlace> places, const std::string& name);
+// A glTF file's primitives at their places as pieces, and what they become. Not for instances, which share
+// their coordinates.
+std::vector<UnwrapPiece> piecesOf(std::span<const GltfPlace> places);
 std::vector<GltfCharts> chartsOf(std::span<const GltfPlace> places, const Unwrapped& unwrapped);
 
 // Shared by its parts.
@@ -67,6 +68,29 @@ struct FlatChart
 	std::vector<glm::dvec2> points;
 	std::vector<glm::uvec3> triangles;
 };
+
+struct Chart
+{
+	std::vector<uint32_t> triangles;
+	FlatChart flat;
+	double area = 0.0;
+	double stretch = 0.0; // sum of squares by area
+};
+
+// Charts of the pieces that have charts of their own (`charted`: the piece that has each piece's). Triangles are numbered through
+// these pieces.
+std::vector<Chart> chartsOf(const Level& level, std::span<const UnwrapPiece> pieces, std::span<const std::size_t> charted,
+							int threads);
+
+inline double crossOf(glm::dvec2 a, glm::dvec2 b)
+{
+	return a.x * b.y - a.y * b.x;
+}
+
+inline double areaIn(std::span<const glm::dvec2> points, glm::uvec3 t)
+{
+	return 0.5 * crossOf(points[t.y] - points[t.x], points[t.z] - points[t.x]);
+}
 
 // A chart on a page, in texels.
 struct ChartPlace

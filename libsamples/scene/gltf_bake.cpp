@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gives the meshes of a glTF file baked values: what each place of a mesh has in common, and where the target wants it.
-#include "scene/gltf_edit.h"
+#include "scene/gltf_bake.h"
 
-#include "core/decimal.h"
-#include "core/error.h"
-#include "core/file.h"
-#include "core/image.h"
-#include "core/json_text.h"
-#include "core/lists.h"
 #include "scene/load_parts.h"
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -26,7 +19,6 @@ namespace
 
 using Document = GltfEditor::Document;
 
-constexpr int kMostSet = 7;        // of texture coordinates
 constexpr std::size_t kTries = 64; // sets of values that a primitive is compared with: with all, a forest would take forever
 
 // Values of a bake that become one attribute.
@@ -48,33 +40,9 @@ struct ValueGroup
 	std::vector<std::pair<std::string, std::size_t>> accessors;
 };
 
-// A mesh with separate values: at one node, or at all.
-struct MeshUnit
-{
-	std::size_t mesh = 0;
-	std::vector<std::size_t> nodes;
-	std::map<std::size_t, std::vector<const GltfPlace*>> primitives;
-	std::map<std::size_t, std::size_t> groups; // per primitive
-};
-
 bool isSamePlacement(const GltfPlace& a, const GltfPlace& b)
 {
 	return a.node == b.node && a.instance == b.instance;
-}
-
-std::string setName(int set)
-{
-	return "TEXCOORD_" + std::to_string(set);
-}
-
-int firstFreeSet(const Document& attributes)
-{
-	int set = 0;
-	while (attributes.contains(setName(set)))
-	{
-		set += 1;
-	}
-	return set;
 }
 
 // Takes values of other vertices, unless a vertex has different ones.
@@ -92,23 +60,12 @@ bool merge(std::vector<float>& numbers, const std::vector<float>& other)
 	return all_fit;
 }
 
-// `value` is 0 to 1 if the component type is an integer.
-void appendComponent(std::string& bytes, uint64_t component, float value)
-{
-	switch (component)
-	{
-	case 5126: appendRaw(bytes, value); break;
-	case 5123: appendRaw(bytes, static_cast<uint16_t>(value * 65535.0F + 0.5F)); break;
-	default: appendRaw(bytes, static_cast<uint8_t>(value * 255.0F + 0.5F));
-	}
-}
-
 class Baker
 {
 public:
 	Baker(GltfEditor& editor, const GltfBake& bake)
-		: m_editor(editor), m_bake(bake), m_in_color(bake.target == BakeTarget::color || bake.target == BakeTarget::color_alpha),
-		  m_colors(bake.color || m_in_color)
+		: m_editor(editor), m_bake(bake), m_textures(editor, bake),
+		  m_in_color(bake.target == BakeTarget::color || bake.target == BakeTarget::color_alpha), m_colors(bake.color || m_in_color)
 	{
 		const float unset = !m_bake.visibility.empty() && m_bake.kind == BakedKind::visibility ? 1.0F : 0.0F;
 		m_attribute = m_bake.target == BakeTarget::visibility ? std::string(kBakedNames[static_cast<std::size_t>(m_bake.kind)])
@@ -130,6 +87,35 @@ public:
 		{
 			m_editor.fail("COLOR_0", "an earlier bake in a file that was changed since", "the file before that bake");
 		}
+	}
+
+	void check(std::span<const GltfPlace> places)
+	{
+		const std::vector<MeshUnit> units = unitsOf(places);
+		for (const MeshUnit& unit : units)
+		{
+			for (const auto& [number, at] : unit.primitives)
+			{
+				checkTarget(primitiveOf(unit.mesh, number)["attributes"]);
+			}
+		}
+		const bool own_vertices = !m_bake.charts.empty() || m_bake.split.how != nullptr;
+		for (const GltfPlace& place : places)
+		{
+			const std::string where = "nodes[" + std::to_string(place.node) + "]";
+			if (own_vertices && place.instance)
+			{
+				m_editor.fail(where, "instances by EXT_mesh_gpu_instancing",
+							  "nodes with a mesh each, since instances share their vertices", ExitCode::unsupported);
+			}
+			const Document& node = items("nodes")[place.node];
+			if (m_bake.instances == BakeInstances::attribute && m_placements[numberIn(node, "mesh")] > 1 && !place.instance &&
+				!node.value("extras", Document::object()).is_object())
+			{
+				m_editor.fail(where + ".extras", "no object", "one, or nothing", ExitCode::unsupported);
+			}
+		}
+		m_textures.check(units);
 	}
 
 	void add(std::span<const GltfPlace> places, GltfBaked& made)
@@ -156,9 +142,10 @@ public:
 		{
 			addValues(group);
 		}
-		const bool copies = m_bake.others_stay && !m_bake.png.empty();
-		const std::set<std::size_t> kept = copies ? materialsOfOthers(units, meshesOfOthers(units)) : std::set<std::size_t>();
-		m_bake.charts.empty() ? addMeshes(units, made) : addCharts(places, units, made);
+		if (m_bake.charts.empty())
+		{
+			addMeshes(units, made);
+		}
 		if (!m_bake.visibility.empty())
 		{
 			store(units, made);
@@ -167,9 +154,9 @@ public:
 		{
 			addFactors(places, made);
 		}
-		if (!m_bake.png.empty())
+		if (!m_bake.png.empty() || !m_bake.charts.empty())
 		{
-			addTexture(units, kept);
+			made.copies += m_textures.add(places, units);
 		}
 		made.bytes_added = m_editor.bytesAdded();
 		made.kept_alpha = m_kept_alpha.size();
@@ -288,8 +275,9 @@ private:
 		}
 		if (m_bake.target == BakeTarget::texcoord && m_editor.earlier != textIn(m_bake.record, "to"))
 		{
-			m_editor.fail(m_attribute, "it in use",
-						  "a set that is free, as --to texcoord:" + std::to_string(firstFreeSet(attributes)));
+			const int set = firstFreeSet(attributes);
+			m_editor.fail(m_attribute, set > kMostSet ? "it in use, as all sets are" : "it in use",
+						  set > kMostSet ? "another target" : "a set that is free, as --to texcoord:" + std::to_string(set));
 		}
 		const Document& accessor = items("accessors")[found];
 		if (m_bake.target != BakeTarget::texcoord && (accessor["type"] != "SCALAR" || accessor["componentType"] != 5126U))
@@ -363,7 +351,7 @@ private:
 			for (std::size_t i = 0; i < channels; ++i)
 			{
 				const float before = i < given ? static_cast<float>(base->number(v, i)) : 1.0F;
-				appendComponent(bytes, component, (i == 3) == alpha ? before * value : before);
+				appendComponent(bytes, component, static_cast<double>((i == 3) == alpha ? before * value : before), true);
 			}
 			padTo4(bytes);
 		}
@@ -375,25 +363,6 @@ private:
 		return made;
 	}
 
-	// The meshes of nodes that have no values.
-	std::set<std::size_t> meshesOfOthers(const std::vector<MeshUnit>& units)
-	{
-		std::set<std::size_t> nodes;
-		for (const MeshUnit& unit : units)
-		{
-			nodes.insert(unit.nodes.begin(), unit.nodes.end());
-		}
-		std::set<std::size_t> meshes;
-		for (std::size_t i = 0; i < items("nodes").size(); ++i)
-		{
-			if (!nodes.contains(i))
-			{
-				meshes.insert(numberIn(items("nodes")[i], "mesh"));
-			}
-		}
-		return meshes;
-	}
-
 	// Gives the primitives their accessors, in copies of meshes where a mesh has several sets of values.
 	void addMeshes(const std::vector<MeshUnit>& units, GltfBaked& made)
 	{
@@ -403,7 +372,7 @@ private:
 			originals.try_emplace(unit.mesh, items("meshes")[unit.mesh]);
 		}
 		std::map<std::pair<std::size_t, std::map<std::size_t, std::size_t>>, std::size_t> known;
-		std::set<std::size_t> used = m_bake.others_stay ? meshesOfOthers(units) : std::set<std::size_t>();
+		std::set<std::size_t> used = m_bake.others_stay ? meshesOfOthers(m_editor, units) : std::set<std::size_t>();
 		for (const MeshUnit& unit : units)
 		{
 			const auto [at, is_new] = known.try_emplace({unit.mesh, unit.groups}, unit.mesh);
@@ -441,7 +410,7 @@ private:
 			{
 				const int set = firstFreeSet(attributes);
 				attributes[setName(set)] = accessor;
-				m_set_of_material[numberIn(primitive, "material")] = set;
+				m_textures.set_of_material[numberIn(primitive, "material")] = set;
 				continue;
 			}
 			// Sets have no gaps: free ones below get the same accessor.
@@ -501,14 +470,9 @@ private:
 					of_node[place.node].resize(*place.instance + 1, 1.0F);
 					of_node[place.node].back() = factor;
 				}
-				else if (node.value("extras", Document::object()).is_object())
-				{
-					node["extras"]["nook_visibility"] = factor;
-				}
 				else
 				{
-					m_editor.fail("nodes[" + std::to_string(place.node) + "].extras", "no object", "one, or nothing",
-								  ExitCode::unsupported);
+					node["extras"]["nook_visibility"] = factor;
 				}
 			}
 			first = end;
@@ -551,270 +515,9 @@ private:
 		return factor;
 	}
 
-	std::size_t addImage(const std::string& name, std::string_view png)
-	{
-		const std::size_t view = m_editor.addView(Document::object(), png);
-		Document image{{"name", name}, {"mimeType", "image/png"}, {"bufferView", view}};
-		items("images").push_back(std::move(image));
-		return items("images").size() - 1;
-	}
-
-	// The index of a texture made of a PNG file.
-	std::size_t textureOf(std::string_view png)
-	{
-		const std::size_t image = addImage("visibility", png);
-		if (m_sampler == kNoNumber)
-		{
-			m_sampler = items("samplers").size();
-			items("samplers").push_back({{"magFilter", 9729U}, {"minFilter", 9987U}, {"wrapS", 33071U}, {"wrapT", 33071U}});
-		}
-		items("textures").push_back({{"sampler", m_sampler}, {"source", image}});
-		return items("textures").size() - 1;
-	}
-
-	// A copy of a texture with another picture, scaled to its size, as its red channel.
-	std::size_t withRed(std::size_t texture, std::string_view png)
-	{
-		Document made = items("textures")[texture];
-		const std::size_t number = numberIn(made, "source");
-		const std::string where = "textures[" + std::to_string(texture) + "]";
-		if (number == kNoNumber)
-		{
-			m_editor.fail(where, "no image of the core format", "a PNG or JPEG for the red channel", ExitCode::unsupported);
-		}
-		const JsonValue item = m_editor.file.root().item("images", number);
-		const std::string uri = item.text("uri");
-		const std::string path = uri.empty() || uri.starts_with("data:") ? "" : besideLevel(m_editor.file.path, unescaped(uri));
-		checkInside(m_editor.file.path, "images[" + std::to_string(number) + "]", path, m_editor.file.settings);
-		const std::string bytes = !path.empty() ? readFile(path)
-								  : uri.empty()
-									  ? std::string(viewBytes(m_editor.file, numberIn(items("images")[number], "bufferView")))
-									  : dataOf(uri, item).value_or("");
-		const Image image = decodeImage(bytes, path.empty() ? "image.png" : path);
-		const auto is_fine = [](float value)
-		{
-			return std::fabs(255.0F * value - std::round(255.0F * value)) > 0.01F;
-		};
-		if (std::any_of(image.values.begin(), image.values.end(), is_fine))
-		{
-			m_editor.fail(where, "more than 8 bits per channel", "8 bits, for the red channel", ExitCode::unsupported);
-		}
-		std::vector<AlphaImage> red =
-			decodeAlphas({{"visibility.png", "", std::string(png), MaskChannel::red}}, m_editor.file.path);
-		const Mask values{"", red[0].width_px, red[0].height_px, Wrap::clamp, Wrap::clamp, std::move(red[0].alpha)};
-		made["source"] = addImage(textIn(items("images")[number], "name"), pngWithChannel(image, 0, values));
-		items("textures").push_back(made);
-		return items("textures").size() - 1;
-	}
-
-	// Gives a material the texture, and keeps the strength of an earlier one.
-	void setTexture(std::size_t material, std::string_view png, std::size_t set)
-	{
-		constexpr const char* kRough = "metallicRoughnessTexture";
-		const Document pbr = items("materials")[material].value("pbrMetallicRoughness", Document::object());
-		const std::size_t rough = m_bake.in_red && pbr.contains(kRough) ? numberIn(pbr[kRough], "index") : kNoNumber;
-		const auto [known, is_new] = m_textures.try_emplace({png.data(), rough}, 0);
-		if (is_new)
-		{
-			known->second = rough == kNoNumber ? textureOf(png) : withRed(rough, png);
-		}
-		Document& item = items("materials")[material];
-		if (rough != kNoNumber)
-		{
-			item["pbrMetallicRoughness"][kRough]["index"] = known->second;
-		}
-		Document& to = item["occlusionTexture"];
-		Document use{{"index", known->second}, {"texCoord", set}};
-		if (to.contains("strength"))
-		{
-			use["strength"] = to["strength"];
-		}
-		to = std::move(use);
-	}
-
-	// The material of a primitive with a page of the texture: a copy if others keep it as it is (`kept`), or it has another page.
-	std::size_t textured(std::size_t before, std::size_t page, std::string_view png, std::size_t set,
-						 const std::set<std::size_t>& kept)
-	{
-		const auto [known, is_new] = m_materials.try_emplace({before, page}, before);
-		const std::size_t next = items("materials").size();
-		if (is_new)
-		{
-			if (before == kNoNumber || kept.contains(before) || !m_textured.insert(before).second)
-			{
-				known->second = next;
-				items("materials").push_back(before == kNoNumber ? Document::object() : items("materials")[before]);
-			}
-			setTexture(known->second, png, set);
-			m_materials.emplace(std::pair(known->second, page), known->second);
-		}
-		return known->second;
-	}
-
-	void addTexture(const std::vector<MeshUnit>& units, const std::set<std::size_t>& kept)
-	{
-		for (const MeshUnit& unit : units)
-		{
-			for (const auto& [number, places] : unit.primitives)
-			{
-				const std::size_t mesh = numberIn(items("nodes")[unit.nodes.front()], "mesh");
-				const std::size_t before = numberIn(primitiveOf(mesh, number), "material");
-				const auto set = m_set_of_material.find(before);
-				primitiveOf(mesh, number)["material"] =
-					textured(before, 0, m_bake.png,
-							 set != m_set_of_material.end() ? static_cast<uint32_t>(set->second) : m_bake.uv_set.value_or(0), kept);
-			}
-		}
-	}
-
-	// The first set of coordinates that no primitive has.
-	std::size_t freeSet(const std::vector<MeshUnit>& units)
-	{
-		int set = 0;
-		for (const MeshUnit& unit : units)
-		{
-			for (const auto& [primitive, at] : unit.primitives)
-			{
-				set = std::max(set, firstFreeSet(primitiveOf(unit.mesh, primitive)["attributes"]));
-			}
-		}
-		if (set > kMostSet)
-		{
-			m_editor.fail("meshes", "no free set of texture coordinates, with TEXCOORD_" + std::to_string(kMostSet) + " in use",
-						  "at most " + std::to_string(kMostSet) + " of them");
-		}
-		return static_cast<std::size_t>(set);
-	}
-
-	// The materials that primitives without charts have.
-	std::set<std::size_t> materialsOfOthers(const std::vector<MeshUnit>& units, const std::set<std::size_t>& meshes)
-	{
-		std::set<std::pair<std::size_t, std::size_t>> charted;
-		for (const MeshUnit& unit : units)
-		{
-			for (const auto& [primitive, at] : unit.primitives)
-			{
-				charted.emplace(unit.mesh, primitive);
-			}
-		}
-		std::set<std::size_t> materials;
-		for (std::size_t mesh = 0; mesh < items("meshes").size(); ++mesh)
-		{
-			for (std::size_t i = 0; i < items("meshes")[mesh]["primitives"].size(); ++i)
-			{
-				if (meshes.contains(mesh) || !charted.contains({mesh, i}))
-				{
-					materials.insert(numberIn(primitiveOf(mesh, i), "material"));
-				}
-			}
-		}
-		return materials;
-	}
-
-	// An accessor with copies of some elements behind the others.
-	std::size_t extended(std::size_t accessor, const std::vector<uint32_t>& copied)
-	{
-		if (copied.empty())
-		{
-			return accessor;
-		}
-		const GltfValues values(m_editor.file, accessor);
-		std::string bytes;
-		for (std::size_t i = 0; i < values.count() + copied.size(); ++i)
-		{
-			values.append(bytes, i < values.count() ? i : copied[i - values.count()]);
-			padTo4(bytes);
-		}
-		Document item = items("accessors")[accessor];
-		const std::size_t count = values.count() + copied.size();
-		const std::size_t made = m_editor.addAccessor(textIn(item, "type"), numberIn(item, "componentType"), count, bytes);
-		item.erase("sparse");
-		item.update(items("accessors")[made]);
-		items("accessors")[made] = std::move(item);
-		return made;
-	}
-
-	// Gives the primitives of each node coordinates of their own, in copies of meshes at several nodes.
-	void addCharts(std::span<const GltfPlace> places, const std::vector<MeshUnit>& units, GltfBaked& made)
-	{
-		const std::size_t set = freeSet(units);
-		std::set<std::size_t> used = m_bake.others_stay ? meshesOfOthers(units) : std::set<std::size_t>();
-		const std::set<std::size_t> kept = materialsOfOthers(units, used);
-		std::map<std::size_t, Document> originals;
-		std::map<std::pair<std::size_t, std::size_t>, Document> split; // attributes and morph targets by primitive
-		std::map<std::tuple<std::size_t, std::size_t, std::vector<uint32_t>>, std::size_t> known; // accessors of indices
-		for (const MeshUnit& unit : units)
-		{
-			const Document& original = originals.try_emplace(unit.mesh, items("meshes")[unit.mesh]).first->second;
-			std::size_t mesh = unit.mesh;
-			if (!used.insert(mesh).second)
-			{
-				mesh = items("meshes").size();
-				items("meshes").push_back(original);
-				made.copies += 1;
-			}
-			items("nodes")[unit.nodes.front()]["mesh"] = mesh;
-			for (const auto& [number, at] : unit.primitives)
-			{
-				const GltfCharts& charts = m_bake.charts[static_cast<std::size_t>(at.front() - places.data())];
-				const auto [shared, is_new] = split.try_emplace({unit.mesh, number}, original["primitives"][number]);
-				for (Document& accessor : is_new ? shared->second["attributes"] : m_none)
-				{
-					accessor = extended(accessor.get<std::size_t>(), charts.copied);
-				}
-				for (Document& target : is_new && shared->second.contains("targets") ? shared->second["targets"] : m_none)
-				{
-					for (Document& accessor : target)
-					{
-						accessor = extended(accessor.get<std::size_t>(), charts.copied);
-					}
-				}
-				Document primitive = shared->second;
-				const std::size_t before = numberIn(primitive, "material");
-				std::string uvs;
-				std::for_each(charts.uvs.begin(), charts.uvs.end(), [&uvs](glm::vec2 uv) { appendRaw(uvs, uv); });
-				const std::size_t coordinates = m_editor.addAccessor("VEC2", 5126, charts.uvs.size(), uvs);
-				for (std::size_t i = 0; i <= set; ++i) // sets have no gaps
-				{
-					Document& to = primitive["attributes"][setName(static_cast<int>(i))];
-					to = to.is_null() ? Document(coordinates) : to;
-				}
-				primitive["mode"] = 4U;
-				bool is_first = true;
-				for (std::size_t page = 0; page < charts.pages.size(); ++page)
-				{
-					const std::vector<uint32_t>& indices = charts.pages[page];
-					if (indices.empty())
-					{
-						continue;
-					}
-					const auto [accessor, is_new_list] = known.try_emplace({unit.mesh, number, indices}, 0);
-					if (is_new_list)
-					{
-						const std::string bytes(reinterpret_cast<const char*>(indices.data()), 4 * indices.size());
-						accessor->second = m_editor.addAccessor("SCALAR", 5125, indices.size(), bytes, true);
-					}
-					primitive["indices"] = accessor->second;
-					primitive["material"] = textured(before, page, m_bake.pages[page], set, kept);
-					Document& all = items("meshes")[mesh]["primitives"];
-					if (!std::exchange(is_first, false))
-					{
-						all.push_back(primitive);
-						continue;
-					}
-					all[number] = primitive;
-				}
-			}
-		}
-	}
-
 	GltfEditor& m_editor;
 	const GltfBake& m_bake;
-	Document m_none = Document::array();
-	std::size_t m_sampler = kNoNumber;                                      // of the textures
-	std::map<std::pair<const char*, std::size_t>, std::size_t> m_textures;  // by picture and metallic-roughness texture
-	std::map<std::pair<std::size_t, std::size_t>, std::size_t> m_materials; // by the one before and the page
-	std::set<std::size_t> m_textured;                                       // materials that got a page
+	TextureBaker m_textures;
 	bool m_in_color;
 	bool m_colors;
 	std::vector<Channel> m_channels;
@@ -823,11 +526,44 @@ private:
 	std::map<std::size_t, std::size_t> m_placements; // per mesh
 	std::vector<ValueGroup> m_groups;
 	std::map<std::tuple<std::size_t, std::size_t, bool>, std::vector<std::size_t>> m_groups_of; // by positions, colours, sides
-	std::map<std::size_t, int> m_set_of_material; // texture coordinates that were added
-	std::set<std::size_t> m_kept_alpha;           // materials
+	std::set<std::size_t> m_kept_alpha;                                                         // materials
 };
 
 } // namespace
+
+int firstFreeSet(const Document& attributes)
+{
+	int set = 0;
+	while (attributes.contains(setName(set)))
+	{
+		set += 1;
+	}
+	return set;
+}
+
+std::set<std::size_t> meshesOfOthers(GltfEditor& editor, const std::vector<MeshUnit>& units)
+{
+	std::set<std::size_t> nodes;
+	for (const MeshUnit& unit : units)
+	{
+		nodes.insert(unit.nodes.begin(), unit.nodes.end());
+	}
+	std::set<std::size_t> meshes;
+	for (std::size_t i = 0; i < editor.items("nodes").size(); ++i)
+	{
+		if (!nodes.contains(i))
+		{
+			meshes.insert(numberIn(editor.items("nodes")[i], "mesh"));
+		}
+	}
+	return meshes;
+}
+
+void checkTarget(const GltfFile& file, std::span<const GltfPlace> places, const GltfBake& bake)
+{
+	GltfEditor editor(file, "-");
+	Baker(editor, bake).check(places);
+}
 
 GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, const GltfBake& bake,
 				   std::span<const std::string> outputs)
@@ -839,7 +575,9 @@ GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, cons
 	{
 		made = {};
 		GltfEditor editor(file, output);
-		Baker(editor, bake).add(places, made);
+		made.places.assign(places.begin(), places.end());
+		made.copies = bake.split.how == nullptr ? 0 : splitTriangles(editor, made.places, bake.split);
+		Baker(editor, bake).add(made.places, made);
 		if (!outputs.empty())
 		{
 			files.push_back(editor.take(output, bake.record));
@@ -847,59 +585,6 @@ GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, cons
 	}
 	made.files = std::move(files);
 	return made;
-}
-
-std::string placeValues(std::span<const GltfPlace> places, std::span<const float> front, std::span<const float> back,
-						const std::string& ending)
-{
-	const std::size_t sides = back.empty() ? 1 : 2;
-	const bool is_csv = ending == ".csv";
-	std::string rows = is_csv ? "node,instance,primitive,vertex,visibility" + std::string(sides == 2 ? ",back\n" : "\n") : "";
-	Document parts = Document::array();
-	for (const GltfPlace& place : places)
-	{
-		std::vector<float> values(place.count * sides, 0.0F);
-		std::vector<float> times(place.count, 0.0F);
-		for (const auto& [vertex, of_level] : place.vertices)
-		{
-			values[vertex * sides] += front[of_level];
-			values[vertex * sides + sides - 1] += sides == 2 ? back[of_level] : 0.0F;
-			times[vertex] += 1.0F;
-		}
-		for (std::size_t i = 0; i < values.size(); ++i)
-		{
-			values[i] = times[i / sides] > 0.0F ? values[i] / times[i / sides] : 1.0F;
-		}
-		const std::string instance = place.instance ? std::to_string(*place.instance) : "";
-		const std::string head = std::to_string(place.node) + "," + instance + "," + std::to_string(place.primitive) + ",";
-		for (std::size_t v = 0; is_csv && v < place.count; ++v)
-		{
-			rows += head + std::to_string(v) + "," + shortestDecimal(values[v * sides]) +
-					(sides == 2 ? "," + shortestDecimal(values[v * sides + 1]) : "") + "\n";
-		}
-		if (ending == ".npy")
-		{
-			rows.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
-		}
-		parts.push_back({{"node", place.node},
-						 {"instance", place.instance ? Document(*place.instance) : Document()},
-						 {"primitive", place.primitive},
-						 {"values", std::move(values)}});
-	}
-	if (ending == ".json")
-	{
-		return jsonLine(Document{{"schema", "nook/vertices/1"}, {"sides", sides}, {"parts", std::move(parts)}}) + "\n";
-	}
-	if (is_csv)
-	{
-		return rows;
-	}
-	const std::string count = std::to_string(rows.size() / sizeof(float) / sides);
-	std::string head = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + count + (sides == 1 ? ",), }" : ", 2), }");
-	head.resize((head.size() + 11 + 63) / 64 * 64 - 11, ' '); // numpy.lib.format, version 1.0: the values begin at a multiple of 64
-	std::string bytes("\x93NUMPY\x01\x00", 8);
-	appendRaw(bytes, static_cast<uint16_t>(head.size() + 1));
-	return bytes + head + "\n" + rows;
 }
 
 } // namespace nook

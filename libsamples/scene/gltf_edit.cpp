@@ -286,7 +286,7 @@ std::size_t GltfEditor::addAccessor(const std::string& type, uint64_t component,
 
 std::size_t GltfEditor::bytesAdded() const
 {
-	std::size_t bytes = 0;
+	std::size_t bytes = m_settled_bytes;
 	for (const std::string& view : m_added)
 	{
 		bytes += view.size();
@@ -323,6 +323,25 @@ void GltfEditor::placeViews()
 	{
 		items("buffers").push_back({{"byteLength", own.size()}, {"uri", dataUri(own)}});
 	}
+}
+
+void GltfEditor::settle()
+{
+	m_settled_bytes = bytesAdded();
+	placeViews();
+	if (m_gathered)
+	{
+		file.chunk = std::move(*m_gathered);
+		m_gathered.reset();
+	}
+	file.text = jsonLine(json);
+	file.json = nlohmann::json::parse(file.text);
+	file.is_binary = file.has_chunk = m_to_binary;
+	file.buffers.clear();
+	file.decoded.clear();
+	m_added.clear();
+	m_view_of_size.clear();
+	m_view_before = items("bufferViews").size();
 }
 
 // Relative names of buffers and images, for an output in another folder.

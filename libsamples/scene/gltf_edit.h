@@ -47,6 +47,9 @@ public:
 							bool is_indices = false);
 	std::size_t bytesAdded() const;
 
+	// Makes what was added readable through `file`.
+	void settle();
+
 	// The file's bytes, with a record of the bake that allows to undo it (null: none). Call once.
 	std::string take(const std::string& output, const Document& record);
 
@@ -68,6 +71,7 @@ private:
 	bool m_has_lines = false;                          // the file's JSON
 	std::optional<std::string> m_gathered;             // the only buffer
 	std::size_t m_view_before = 0;                     // views of the file
+	std::size_t m_settled_bytes = 0;                   // of views that were added and settled
 	std::vector<std::string> m_added;                  // bytes of the views behind them
 	std::map<std::size_t, std::size_t> m_view_of_size; // of elements of that size
 };
@@ -91,10 +95,28 @@ enum class BakeInstances
 	attribute, // the mean, and a factor for each node or instance
 };
 
+// Vertices that are added to a primitive: each is the mean of two earlier ones, or a copy if both are the same.
+using VertexPairs = std::vector<std::pair<uint32_t, uint32_t>>;
+
+// Gives a primitive further vertices in all attributes and morph targets. Unit vectors keep their length, a vertex has the joints
+// with the largest weights, and integers of custom attributes are those of the first vertex.
+void addVertices(GltfEditor& editor, nlohmann::ordered_json& primitive, const VertexPairs& added);
+
+// Splits triangles at the middles of edges, in copies of meshes that other nodes have as well. Triangles before and after it;
+// `places` get the added vertices. Returns the number of copies. Not for instances, which share triangles.
+struct GltfSplit
+{
+	const LevelSplit* how = nullptr; // null: none
+	std::span<const glm::uvec3> before{};
+	std::span<const glm::uvec3> after{};
+	std::size_t vertices = 0; // before
+};
+std::size_t splitTriangles(GltfEditor& editor, std::vector<GltfPlace>& places, const GltfSplit& split);
+
 // How a primitive is split between charts of a texture: the vertices that the file has stay, copies follow them.
 struct GltfCharts
 {
-	std::vector<uint32_t> copied;             // the vertex that each further one copies
+	VertexPairs copied;                       // the vertex that each further one copies, twice
 	std::vector<glm::vec2> uvs;               // of all
 	std::vector<std::vector<uint32_t>> pages; // indices of the triangles on each page of the texture
 };
@@ -107,6 +129,7 @@ struct GltfBake : GlbBake
 	std::optional<uint32_t> uv_set; // coordinates in the file that `png` uses, in place of `uvs`
 	std::vector<GltfCharts> charts; // for each place; a set of coordinates for them, and a page of the texture each
 	std::vector<std::string> pages; // of the texture, as PNG
+	GltfSplit split;                // the values belong to the triangles after it
 	bool in_red = false;            // textures go into the red channel of the materials' metallic-roughness textures
 	bool others_stay = false;       // nodes without a place keep their meshes without values
 	nlohmann::ordered_json record;  // asset.extras.nook: what was baked and how, "to" for the target; null: none
@@ -115,6 +138,7 @@ struct GltfBake : GlbBake
 struct GltfBaked
 {
 	std::vector<std::string> files; // one for each output
+	std::vector<GltfPlace> places;  // with the vertices that a split added
 	std::vector<float> front;       // per vertex of the level, as stored
 	std::vector<float> back;        // empty if the bake has none
 	std::string compression;        // that the input had: "draco" or "meshopt"; empty: none
@@ -130,6 +154,9 @@ struct GltfBaked
 // 1 GiB.
 GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, const GltfBake& bake,
 				   std::span<const std::string> outputs);
+
+// Throws as bakeInto() does for what depends on the file alone, before there are values. `bake.charts`: not empty for charts.
+void checkTarget(const GltfFile& file, std::span<const GltfPlace> places, const GltfBake& bake);
 
 // asset.extras.nook of a .gltf or .glb file; null without a bake, and for other files.
 nlohmann::ordered_json bakeRecordOf(const std::string& path);

@@ -394,22 +394,37 @@ private:
 										   {},
 										   *mesh,
 										   false,
+										   {},
 										   {}});
 			}
 			triangles(primitive, m_world_from_file * node.world, pose);
 			made.triangle_count = m_level.triangles.size() - made.first_triangle;
 			if (m_file.second_set == kPlacesSet && primitive.triangleCount() > 0)
 			{
-				m_source.places.back().mirrored = m_mirrored;
-				m_source.places.back().triangles.resize(made.triangle_count);
-				std::iota(m_source.places.back().triangles.begin(), m_source.places.back().triangles.end(),
-						  static_cast<uint32_t>(made.first_triangle));
+				finishPlace(m_source.places.back(), made);
 			}
 			if (primitive.uvs == nullptr && !primitive.ramp && made.triangle_count > 0 &&
 				m_source.materials[primitive.material].mask >= 0)
 			{
 				m_tallies["missing-uvs"].add("mesh '" + made.name + "'");
 			}
+		}
+	}
+
+	void finishPlace(GltfPlace& place, const Mesh& made) const
+	{
+		place.mirrored = m_mirrored;
+		place.triangles.resize(made.triangle_count);
+		std::iota(place.triangles.begin(), place.triangles.end(), static_cast<uint32_t>(made.first_triangle));
+		const auto numberOf = [&](uint32_t vertex)
+		{
+			return place.vertices[vertex - place.vertices.front().second].first;
+		};
+		for (const uint32_t t : place.triangles)
+		{
+			const glm::uvec3 corner = m_level.triangles[t];
+			place.corners.emplace_back(numberOf(corner.x), numberOf(m_mirrored ? corner.z : corner.y),
+									   numberOf(m_mirrored ? corner.y : corner.z));
 		}
 	}
 

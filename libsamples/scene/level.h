@@ -162,6 +162,13 @@ struct LevelPart
 };
 LevelPart partOf(const Level& level, std::span<const uint8_t> marks, int threads);
 
+// How triangles of a level were split at the middles of edges.
+struct LevelSplit
+{
+	std::vector<uint32_t> origins;                      // per triangle: the one before that it is a part of, ascending
+	std::vector<std::pair<uint32_t, uint32_t>> middles; // per vertex behind those before: the two that it lies between
+};
+
 // Cuts a box out of a level, with the surroundings needed for the same light as in the whole level.
 
 struct CellSettings

@@ -259,6 +259,7 @@ private:
 		m_current += 1;
 		std::vector<uint32_t> vertices;
 		std::vector<uint32_t> triangles;
+		std::vector<glm::uvec3> corners;
 		std::size_t first_triangle = mesh.first_triangle;
 		const std::size_t first_index = m_indices.size() / sizeof(uint32_t);
 		for (std::size_t t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t)
@@ -270,7 +271,9 @@ private:
 			}
 			for (int corner = 0; corner < 3 && m_level.materials[t] == material; ++corner)
 			{
-				appendRaw(m_indices, slotOf(m_level.triangles[t][corner], vertices));
+				corners.resize(triangles.size());
+				corners.back()[corner] = slotOf(m_level.triangles[t][corner], vertices);
+				appendRaw(m_indices, corners.back()[corner]);
 			}
 		}
 		const std::size_t indices = m_indices.size() / sizeof(uint32_t) - first_index;
@@ -315,6 +318,7 @@ private:
 			place.count = vertices.size();
 			place.triangle = first_triangle;
 			place.triangles = std::move(triangles);
+			place.corners = std::move(corners);
 			place.mesh = m_meshes.size();
 			for (std::size_t v = 0; v < vertices.size(); ++v)
 			{

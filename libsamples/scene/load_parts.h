@@ -72,6 +72,7 @@ struct GltfPlace
 	std::size_t mesh = 0;                                // of the node
 	bool mirrored = false;                               // the level has its corners in the other order
 	std::vector<std::pair<uint32_t, uint32_t>> vertices; // number in the primitive, and in the level; each used one once
+	std::vector<glm::uvec3> corners;                     // of the triangles: numbers in the primitive, in the order of the file
 };
 
 struct LevelSource

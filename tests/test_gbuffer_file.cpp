@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "methods/block.h"
-#include "scene/gbuffer_file.h"
+#include "scene/gbuffer.h"
 #include "shade/shade.h"
 
 #include <catch2/catch.hpp>
@@ -201,13 +201,7 @@ TEST_CASE("scene: depth says by how much its numbers may be off", "[gbuffer]")
 	// Half floats: 11 binary digits.
 	image = foreign(2, 2, {"Z"}, metres);
 	image.halves = {1};
-	const std::string name = "half";
-	const GBufferFile file{name, image};
-	const GBufferImport linear;
-	const Projector projector(projectionOf(Lens(), 1.0), 2, 2);
-	const DepthReader half(file, linear, 0, projector);
-	CHECK(half.hasErrors());
-	CHECK(half.errorOf(0, 5.0F) == Approx(5.0 / 2048.0));
+	CHECK(gbufferFrom(image, "half", fromDepth()).depth_error_m == std::vector<float>(4, 5.0F / 2048.0F));
 	// A depth buffer with its near plane at 0.1 m: depth² / near × half a step, twice that for floats near 1.
 	const auto deviceError = [&](double steps)
 	{

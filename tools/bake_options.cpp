@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake_options.h"
 
-#include "core/decimal.h"
+#include "core/lists.h"
 #include "core/text.h"
-#include "core/words.h"
 #include "scene/sample_set.h"
 #include "volume/evaluate.h"
 
@@ -11,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace nook
 {
@@ -315,14 +313,10 @@ void addBakeTextures(Facts& facts, const std::vector<TextureBake>& pages, std::s
 {
 	const auto sum = [&pages](std::size_t TextureBake::*member)
 	{
-		return std::accumulate(pages.begin(), pages.end(), std::size_t{0},
-							   [member](std::size_t all, const TextureBake& page) { return all + page.*member; });
+		return sumOver(pages, [member](const TextureBake& page) { return page.*member; });
 	};
-	double squares = 0.0;
-	for (const TextureBake& page : pages)
-	{
-		squares += page.standard_error * page.standard_error / static_cast<double>(pages.size());
-	}
+	const double squares = sumOver(pages, [&pages](const TextureBake& page)
+								   { return page.standard_error * page.standard_error / static_cast<double>(pages.size()); });
 	const std::string across = std::to_string(pages.front().size_px);
 	facts.whole("texels_across", pages.front().size_px);
 	facts.whole("charts", sum(&TextureBake::charts));

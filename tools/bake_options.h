@@ -10,7 +10,6 @@
 #include "scene/gltf_edit.h"
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 

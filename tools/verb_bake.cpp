@@ -20,7 +20,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 namespace nook
@@ -377,9 +376,7 @@ Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& fa
 	facts.line("unwrapped: " + std::to_string(unwrapped.charts) + " charts on " + counted(unwrapped.pages, "page", "pages") +
 			   ", texels of " + roundedText(unwrapped.texel_m, 3) + " m, coverage " + roundedText(unwrapped.coverage, 3) +
 			   ", stretch " + roundedText(unwrapped.stretch, 3));
-	addBakeTextures(facts, pages,
-					std::accumulate(in.pages.begin(), in.pages.end(), std::size_t{0},
-									[](std::size_t all, const std::string& png) { return all + png.size(); }));
+	addBakeTextures(facts, pages, sumOver(in.pages, [](const std::string& png) { return png.size(); }));
 	addBakeCheck(facts, options, check, "points of the surface");
 	addFile(facts, input, baked);
 	addTextureFiles(options, pages, made);

@@ -105,21 +105,15 @@ VertexBake bakeVertices(const Tracer& tracer, const BakeSettings& settings, cons
 BakeCheck checkBake(const Tracer& tracer, const Level& baked, const VertexBake& bake, const BakeSettings& settings,
 					std::size_t points, const RunSettings& run);
 
-// Orients two-sided triangles consistently with their neighbours, so that the fronts of a surface are all on one side.
-
 // Flips each triangle of a two-sided material whose normal opposes that of its neighbours, weighted by area, at all three corners;
 // otherwise its front would share values with adjacent backs. The picture is unchanged. Returns the number of flipped triangles;
 // the same for any thread count.
 std::size_t alignSheets(Level& level, int threads);
 
-// Detects surface points inside matter, where nobody can see them.
-
 // True if, of nine directions over the hemisphere about `normal` (unit), at least seven more meet the back of a surface first than
 // meet a front: under a box that stands on a floor, or in a wall that intersects another. `origin` is off its own surface. Masked
 // surfaces have no inside.
 bool isBuried(const Tracer& tracer, glm::dvec3 origin, glm::dvec3 normal);
-
-// Per-pixel baked values for a G-buffer, and the same view of the static level.
 
 struct BakedPicture
 {

@@ -6,6 +6,7 @@
 
 #include "bake/surface_samples.h"
 #include "core/decimal.h"
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/random.h"
@@ -29,18 +30,6 @@ namespace
 constexpr std::array<glm::dvec3, 6> kAxes{glm::dvec3(1.0, 0.0, 0.0),  glm::dvec3(-1.0, 0.0, 0.0), glm::dvec3(0.0, 1.0, 0.0),
 										  glm::dvec3(0.0, -1.0, 0.0), glm::dvec3(0.0, 0.0, 1.0),  glm::dvec3(0.0, 0.0, -1.0)};
 
-// Their number along one axis.
-int countAlong(double size_m, double spacing_m)
-{
-	const double count = std::ceil(size_m / spacing_m);
-	if (!(count <= kMostProbesAlong))
-	{
-		refuseInput("probes", "more than " + std::to_string(kMostProbesAlong) + " probes along an axis of the level",
-					"at most that", ExitCode::usage);
-	}
-	return std::max(1, static_cast<int>(count));
-}
-
 ProbeGrid placeProbes(const Bounds& bounds, double spacing_m)
 {
 	ProbeGrid grid;
@@ -48,7 +37,13 @@ ProbeGrid placeProbes(const Bounds& bounds, double spacing_m)
 	double probes = 1.0;
 	for (int axis = 0; axis < 3; ++axis)
 	{
-		grid.count[axis] = countAlong(bounds.most[axis] - bounds.least[axis], spacing_m);
+		const double count = std::ceil((bounds.most[axis] - bounds.least[axis]) / spacing_m);
+		if (!(count <= kMostProbesAlong))
+		{
+			refuseInput("probes", "more than " + std::to_string(kMostProbesAlong) + " probes along an axis of the level",
+						"at most that", ExitCode::usage);
+		}
+		grid.count[axis] = std::max(1, static_cast<int>(count));
 		grid.origin[axis] = 0.5 * (bounds.least[axis] + bounds.most[axis]) - 0.5 * spacing_m * (grid.count[axis] - 1);
 		probes *= grid.count[axis];
 	}
@@ -77,11 +72,7 @@ uint8_t byteOf(double value)
 // Least-squares fit over six normals along the axes.
 std::array<uint8_t, 4> texelOf(std::span<const ReferenceValue> values)
 {
-	double mean = 0.0;
-	for (const ReferenceValue& value : values)
-	{
-		mean += value.visibility / 6.0;
-	}
+	const double mean = sumOver(values, [](const ReferenceValue& value) { return value.visibility / 6.0; });
 	const auto slope = [&](std::size_t axis)
 	{
 		return byteOf(255.0 * (0.5 * (values[2 * axis].visibility - values[2 * axis + 1].visibility) + 0.5));

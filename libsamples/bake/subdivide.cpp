@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/surface_samples.h"
 
-#include "core/random.h"
+#include "core/lists.h"
 
 #include <glm/geometric.hpp>
 
@@ -109,8 +109,8 @@ public:
 		return std::max({m_length[m_edge[3 * triangle]], m_length[m_edge[3 * triangle + 1]], m_length[m_edge[3 * triangle + 2]]});
 	}
 
-	// The number that splitting the marked edges creates.
-	std::size_t newVertices() const
+	// The vertices at both ends of marked edges, whose middles splitting adds; sorted.
+	std::vector<uint64_t> markedPairs() const
 	{
 		std::vector<uint64_t> pairs;
 		for (std::size_t slot = 0; slot < m_edge.size(); ++slot)
@@ -122,7 +122,8 @@ public:
 			}
 		}
 		std::sort(pairs.begin(), pairs.end());
-		return static_cast<std::size_t>(std::unique(pairs.begin(), pairs.end()) - pairs.begin());
+		pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+		return pairs;
 	}
 
 	void clear()
@@ -160,21 +161,9 @@ using Part = std::array<PartCorner, 3>;
 class Splitter
 {
 public:
-	Splitter(Level& level, const EdgeMarks& marks, LevelSplit& split) : m_level(level), m_marks(marks)
+	Splitter(Level& level, const EdgeMarks& marks, LevelSplit& split)
+		: m_level(level), m_marks(marks), m_pairs(marks.markedPairs()), m_first(level.positions.size())
 	{
-		for (std::size_t t = 0; t < level.triangles.size(); ++t)
-		{
-			for (std::size_t edge = 0; edge < 3; ++edge)
-			{
-				if (marks.isMarked(t, edge))
-				{
-					m_pairs.push_back(pairAt(t, edge));
-				}
-			}
-		}
-		std::sort(m_pairs.begin(), m_pairs.end());
-		m_pairs.erase(std::unique(m_pairs.begin(), m_pairs.end()), m_pairs.end());
-		m_first = level.positions.size();
 		for (const uint64_t pair : m_pairs)
 		{
 			split.middles.emplace_back(static_cast<uint32_t>(pair >> 32U), static_cast<uint32_t>(pair));
@@ -195,7 +184,7 @@ public:
 		{
 			if (m_marks.isMarked(t, edge))
 			{
-				middles[edge] = {middleOf(pairAt(t, edge)), 0.5 * (corners[edge].at + corners[(edge + 1) % 3].at)};
+				middles[edge] = {middleOf(t, edge), 0.5 * (corners[edge].at + corners[(edge + 1) % 3].at)};
 				count += 1;
 				marked = edge;
 			}
@@ -237,13 +226,10 @@ public:
 	}
 
 private:
-	uint64_t pairAt(std::size_t t, std::size_t edge) const
+	uint32_t middleOf(std::size_t t, std::size_t edge) const
 	{
 		const glm::uvec3 corner = m_level.triangles[t];
-		return pairOf(corner[static_cast<int>(edge)], corner[static_cast<int>((edge + 1) % 3)]);
-	}
-	uint32_t middleOf(uint64_t pair) const
-	{
+		const uint64_t pair = pairOf(corner[static_cast<int>(edge)], corner[static_cast<int>((edge + 1) % 3)]);
 		return static_cast<uint32_t>(m_first) +
 			   static_cast<uint32_t>(std::lower_bound(m_pairs.begin(), m_pairs.end(), pair) - m_pairs.begin());
 	}
@@ -268,7 +254,7 @@ private:
 	Level& m_level;
 	const EdgeMarks& m_marks;
 	std::vector<uint64_t> m_pairs; // vertex pairs, whose midpoints are added in this order
-	std::size_t m_first = 0;       // first midpoint
+	std::size_t m_first;           // first midpoint
 };
 
 // Splits every triangle with marked edges at their midpoints into two, three or four of the same orientation, material and mesh.
@@ -328,13 +314,6 @@ void splitMarked(Level& level, std::vector<SurfaceSample>& samples, const EdgeMa
 }
 
 constexpr int kMostRounds = 32; // each halves edges: a kilometre becomes a micrometre, and edges stop earlier at the minimum length
-
-// Minimum edge length: contact shadows begin with zero width, so subdivision would never end.
-double leastEdge(const Tracer& tracer, const BakeSettings& settings)
-{
-	const double diagonal_m = glm::distance(tracer.bounds().least, tracer.bounds().most);
-	return std::isfinite(settings.radius_m) ? settings.radius_m / 32.0 : diagonal_m / 4096.0;
-}
 
 bool isPair(const SurfaceSample& a, const SurfaceSample& b)
 {
@@ -425,7 +404,7 @@ std::size_t markWorst(EdgeMarks& marks, std::span<const uint32_t> worst, std::si
 		{
 			marks.mark(t);
 		}
-		const std::size_t made = marks.newVertices();
+		const std::size_t made = marks.markedPairs().size();
 		if (made <= room)
 		{
 			break;
@@ -443,25 +422,13 @@ struct Density
 	double cell_m2 = 0.0;
 };
 
-Density densityOf(const Tracer& tracer, const BakeSettings& settings, int rays, double area_m2)
-{
-	constexpr double kMostCells = 1e6; // bounds the cells of a level that is large relative to the radius
-	const double side_m = 8.0 * leastEdge(tracer, settings);
-	// There are about two triangles per vertex; two samples are needed to tell a difference from noise.
-	return {static_cast<std::size_t>(std::max(2, settings.rays / rays / 2)), std::max(side_m * side_m, area_m2 / kMostCells)};
-}
-
 // Adds and traces samples for triangles that have too few, in triangle order; returns how many.
 std::size_t topUp(const Tracer& tracer, const Level& level, std::vector<SurfaceSample>& samples, const Density& density, int rays,
 				  uint32_t seed, const BakeSettings& settings, const RunSettings& run)
 {
-	const std::vector<double> areas = areasOf(level);
-	std::vector<std::size_t> missing;
-	missing.reserve(areas.size());
-	for (const double area_m2 : areas)
-	{
-		missing.push_back(std::max(density.least, static_cast<std::size_t>(area_m2 / density.cell_m2)));
-	}
+	std::vector<std::size_t> missing =
+		mapped(areasOf(level),
+			   [&density](double area_m2) { return std::max(density.least, static_cast<std::size_t>(area_m2 / density.cell_m2)); });
 	for (const SurfaceSample& sample : samples)
 	{
 		missing[sample.triangle] -= std::min<std::size_t>(missing[sample.triangle], 1);
@@ -485,9 +452,13 @@ VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const 
 	bake.split.origins.resize(level.triangles.size());
 	std::iota(bake.split.origins.begin(), bake.split.origins.end(), 0U);
 	const int rays = std::min(settings.rays, kRaysOfPoint);
-	const std::vector<double> all_areas = areasOf(level);
-	const Density density = densityOf(tracer, settings, rays, std::accumulate(all_areas.begin(), all_areas.end(), 0.0));
-	const double least_edge_m = leastEdge(tracer, settings);
+	// Contact shadows begin with zero width, so subdivision would never end without a minimum edge length.
+	const double diagonal_m = glm::distance(tracer.bounds().least, tracer.bounds().most);
+	const double least_edge_m = std::isfinite(settings.radius_m) ? settings.radius_m / 32.0 : diagonal_m / 4096.0;
+	constexpr double kMostCells = 1e6; // bounds the cells of a level that is large relative to the radius
+	const double cell_m2 = std::max(64.0 * least_edge_m * least_edge_m, sumOver(areasOf(level)) / kMostCells);
+	// There are about two triangles per vertex; two samples are needed to tell a difference from noise.
+	const Density density{static_cast<std::size_t>(std::max(2, settings.rays / rays / 2)), cell_m2};
 	std::vector<SurfaceSample> samples;
 	bake.points = topUp(tracer, level, samples, density, rays, settings.seed, settings, run);
 	bool is_last = false;

@@ -3,7 +3,6 @@
 // E. Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
 #include "bake/surface_samples.h"
 
-#include "core/lists.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/work_units.h"
@@ -50,25 +49,19 @@ bool hasTwoSides(const Level& level, std::size_t triangle)
 	return level.material_list[level.materials[triangle]].two_sided;
 }
 
-// Position on the sample's side of its triangle, with the triangle's own normal.
-ReferencePoint flatPointOf(const Level& level, const SurfaceSample& sample)
-{
-	const glm::uvec3 corner = level.triangles[sample.triangle];
-	const glm::dvec3 position = interpolated(level.positions, corner, static_cast<double>(sample.b), static_cast<double>(sample.c));
-	return {position, (sample.back ? -1.0 : 1.0) * geometricNormal(level, sample.triangle), 0.0};
-}
-
 // Where its rays start; `flat`: with the normal of the triangle, whatever the settings say.
 ReferencePoint pointOf(const Tracer& tracer, const Level& level, SurfaceSample& sample, const BakeSettings& settings, bool flat)
 {
-	ReferencePoint point = flatPointOf(level, sample);
+	const glm::dvec2 at(static_cast<double>(sample.b), static_cast<double>(sample.c));
+	const double side = sample.back ? -1.0 : 1.0;
+	ReferencePoint point{interpolated(level.positions, level.triangles[sample.triangle], at.x, at.y),
+						 side * geometricNormal(level, sample.triangle), 0.0};
 	const bool smooth = settings.normals == NormalKind::interpolated && !flat;
 	if (!smooth && settings.cage_m == 0.0)
 	{
 		return point;
 	}
-	const glm::dvec2 at(static_cast<double>(sample.b), static_cast<double>(sample.c));
-	const glm::dvec3 normal = (sample.back ? -1.0 : 1.0) * interpolatedNormal(level, sample.triangle, at);
+	const glm::dvec3 normal = side * interpolatedNormal(level, sample.triangle, at);
 	point.normal = smooth ? normal : point.normal;
 	return startOf(tracer, point, normal, settings, &sample.missed);
 }
@@ -102,22 +95,9 @@ void findBuried(const Tracer& tracer, const Level& level, std::span<SurfaceSampl
 			}
 		}
 	};
-	const auto cost = [&](std::size_t unit)
-	{
-		return kRays * static_cast<double>(chunk(unit).size());
-	};
-	runStage({"inside", (samples.size() + kChunk - 1) / kChunk, cost, compute, pass}, withoutProgress(run));
-}
-
-void takeValues(std::span<SurfaceSample> samples, std::span<const ReferenceValue> values)
-{
-	for (std::size_t i = 0; i < samples.size(); ++i)
-	{
-		samples[i].visibility = static_cast<float>(values[i].visibility);
-		samples[i].standard_error = static_cast<float>(values[i].standard_error);
-		samples[i].bent = values[i].bent;
-		samples[i].shut = values[i].visibility <= kShut; // before subtracting `base`
-	}
+	runStage({"inside", (samples.size() + kChunk - 1) / kChunk,
+			  [&](std::size_t unit) { return kRays * static_cast<double>(chunk(unit).size()); }, compute, pass},
+			 withoutProgress(run));
 }
 
 } // namespace
@@ -251,11 +231,9 @@ std::vector<SurfaceSample> placeByArea(const Level& level, std::span<const doubl
 void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSample> samples, const BakeSettings& settings,
 				  int rays, uint32_t seed, const RunSettings& run, const char* stage)
 {
-	const auto block_at = [samples](std::size_t first, std::size_t size)
-	{
-		return samples.subspan(first, size);
-	};
-	traceSamples(tracer, level, samples.size(), block_at, settings, rays, seed, run, stage);
+	traceSamples(
+		tracer, level, samples.size(), [samples](std::size_t first, std::size_t size) { return samples.subspan(first, size); },
+		settings, rays, seed, run, stage);
 }
 
 void traceSamples(const Tracer& tracer, const Level& level, std::size_t count, const BlockAt& block_at,
@@ -274,19 +252,19 @@ void traceSamples(const Tracer& tracer, const Level& level, std::size_t count, c
 		};
 		how.seed = seed + static_cast<uint32_t>(first / kBlock) * 0x9e3779b9U; // another sequence for each block
 		const std::vector<ReferenceValue> values = referenceAtPoints(tracer, block.size(), pointAt, how, withoutProgress(run));
-		if (!isShare(run)) // else nobody reads them
+		const auto take = [&](std::size_t i)
 		{
-			takeValues(block, values);
-		}
-		if (settings.base && !isShare(run))
-		{
-			const auto subtract = [&](std::size_t i)
+			block[i].visibility = static_cast<float>(values[i].visibility);
+			block[i].standard_error = static_cast<float>(values[i].standard_error);
+			block[i].bent = values[i].bent;
+			block[i].shut = values[i].visibility <= kShut;
+			if (settings.base)
 			{
 				const ReferencePoint point = pointAt(i);
 				block[i].visibility -= static_cast<float>(settings.base(point.position, point.normal));
-			};
-			parallelFor(block.size(), run.threads, subtract);
-		}
+			}
+		};
+		parallelFor(isShare(run) ? 0 : block.size(), run.threads, take); // nobody reads them in a share
 		progress.finish(block.size());
 	}
 }

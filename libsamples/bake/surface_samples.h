@@ -122,13 +122,9 @@ std::vector<glm::vec3> vertexNormals(const Level& level);
 // too. BakeSides::separate: those of two-sided materials have two; the backs come last, in the order of the fronts.
 Unknowns unknownsOf(const Level& level, BakeSides sides = BakeSides::mean);
 
-// Subdivides a level until its vertex bake meets a requested error.
-
 // Alternates fitting and subdivision until no triangle's error exceeds settings.max_error. Requires max_error > 0 and
 // BakeFit::surface.
 VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const RunSettings& run);
-
-// Fits vertex values whose interpolation over the triangles is closest to the surface samples.
 
 struct FittedValues
 {

@@ -314,16 +314,6 @@ private:
 	std::vector<std::size_t> m_found;
 };
 
-SurfaceSample sampleAt(const Level& level, std::span<const glm::vec2> uvs, uint32_t triangle, glm::dvec2 uv)
-{
-	const glm::dvec3 weights = weightsAt(uvs, level.triangles[triangle], uv);
-	SurfaceSample sample;
-	sample.triangle = triangle;
-	sample.b = static_cast<float>(std::clamp(weights.y, 0.0, 1.0));
-	sample.c = static_cast<float>(std::clamp(weights.z, 0.0, 1.0 - static_cast<double>(sample.b)));
-	return sample;
-}
-
 // Samples of some rows of texels in order, and the texel of each.
 struct RowSamples
 {
@@ -348,7 +338,11 @@ RowSamples samplesOf(const Level& level, std::span<const glm::vec2> uvs, std::sp
 		{
 			const glm::dvec2 uv(static_cast<double>(place % across) + 0.5,
 								static_cast<double>(place / across + static_cast<std::size_t>(kSamplesAcross * first)) + 0.5);
-			all.samples.push_back(sampleAt(level, uvs, owners[place], uv / static_cast<double>(across)));
+			const glm::dvec3 weights = weightsAt(uvs, level.triangles[owners[place]], uv / static_cast<double>(across));
+			SurfaceSample& sample = all.samples.emplace_back();
+			sample.triangle = owners[place];
+			sample.b = static_cast<float>(std::clamp(weights.y, 0.0, 1.0));
+			sample.c = static_cast<float>(std::clamp(weights.z, 0.0, 1.0 - static_cast<double>(sample.b)));
 			all.texel_of.push_back(static_cast<std::size_t>(first) * size + i);
 		}
 	}

@@ -201,7 +201,6 @@ Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const 
 					made.level.uvs.push_back(
 						none ? glm::vec2(0.0F)
 							 : glm::vec2(places[found->second].at(flat[chart].points[point]) / static_cast<double>(made.size_px)));
-					made.vertex_of.push_back(corners[k]);
 				}
 				triangle[k] = at->second;
 			}

@@ -37,9 +37,8 @@ struct UnwrapPiece
 
 struct Unwrapped
 {
-	Level level;                     // the pieces' triangles in order, with vertices of their own in each chart; uvs: on the page
-	std::vector<uint32_t> vertex_of; // per vertex: that of the level before
-	std::vector<uint32_t> page_of;   // per triangle; kNoPage without an area
+	Level level;                   // the pieces' triangles in order, with vertices of their own in each chart; uvs: on the page
+	std::vector<uint32_t> page_of; // per triangle; kNoPage without an area
 	std::size_t charts = 0;
 	std::size_t pages = 0;
 	int size_px = 0;

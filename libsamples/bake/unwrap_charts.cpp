@@ -261,23 +261,18 @@ private:
 		}
 		std::sort(sides.begin(), sides.end(),
 				  [](const Side& a, const Side& b) { return std::tie(a.key, a.side) < std::tie(b.key, b.side); });
-		for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end)
+		const auto join = [&](std::span<const Side> edge)
 		{
-			while (end < sides.size() && sides[end].key == sides[begin].key)
+			Triangle& a = m_triangles[edge.front().side / 3];
+			Triangle& b = m_triangles[edge.back().side / 3];
+			if (edge.size() == 2 && edge[0].ascends != edge[1].ascends && glm::dot(a.normal, b.normal) >= kCrease * a.area * b.area)
 			{
-				++end;
+				a.next[edge[0].side % 3] = edge[1].side;
+				b.next[edge[1].side % 3] = edge[0].side;
 			}
-			if (end == begin + 2 && sides[begin].ascends != sides[begin + 1].ascends)
-			{
-				Triangle& a = m_triangles[sides[begin].side / 3];
-				Triangle& b = m_triangles[sides[begin + 1].side / 3];
-				if (glm::dot(a.normal, b.normal) >= kCrease * a.area * b.area)
-				{
-					a.next[sides[begin].side % 3] = sides[begin + 1].side;
-					b.next[sides[begin + 1].side % 3] = sides[begin].side;
-				}
-			}
-		}
+		};
+		eachRun(
+			std::span<const Side>(sides), [](const Side& a, const Side& b) { return a.key == b.key; }, join);
 	}
 
 	double edgeLength(const Triangle& triangle, uint32_t k) const
@@ -452,8 +447,8 @@ private:
 			const Triangle& triangle = m_triangles[chart.triangles[i]];
 			for (uint32_t k = 0; k < 3; ++k)
 			{
-				const uint32_t next = nextIn(chart.triangles[i], k);
-				if (next != kNoIndex)
+				const uint32_t next = triangle.next[k];
+				if (next != kNoIndex && m_member[next / 3] == m_member[chart.triangles[i]])
 				{
 					const uint32_t other = 3 * m_local[next / 3];
 					groups.join(3 * i + k, other + (next + 1 - next / 3 * 3) % 3);
@@ -477,13 +472,6 @@ private:
 			}
 			chart.flat.triangles.back()[static_cast<int>(i % 3)] = number;
 		}
-	}
-
-	// The side behind an edge if it is in the same chart.
-	uint32_t nextIn(uint32_t triangle, uint32_t k) const
-	{
-		const uint32_t next = m_triangles[triangle].next[k];
-		return next != kNoIndex && m_member[next / 3] == m_member[triangle] ? next : kNoIndex;
 	}
 
 	std::optional<Chart> chartOf(std::vector<uint32_t> triangles, uint32_t cluster)
@@ -521,12 +509,11 @@ private:
 	// Scales a chart to its area and measures its stretch; false if it folds, overlaps or is stretched too much.
 	bool isGood(Chart& chart)
 	{
-		double area = 0.0;
-		for (const glm::uvec3& t : chart.flat.triangles)
+		const auto areaOf = [&](const glm::uvec3& t)
 		{
-			area += areaIn(chart.flat.points, t);
-		}
-		const double scale = std::sqrt(chart.area / area);
+			return areaIn(chart.flat.points, t);
+		};
+		const double scale = std::sqrt(chart.area / sumOver(chart.flat.triangles, areaOf));
 		for (glm::dvec2& p : chart.flat.points)
 		{
 			p *= scale;
@@ -536,7 +523,7 @@ private:
 		{
 			const Triangle& triangle = m_triangles[chart.triangles[i]];
 			const glm::uvec3 t = chart.flat.triangles[i];
-			const double flat = areaIn(chart.flat.points, t);
+			const double flat = areaOf(t);
 			if (!(flat >= kLeastArea * triangle.area))
 			{
 				return false;

@@ -3,7 +3,6 @@
 // (as rigid as possible).
 #include "bake/unwrap.h"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <Eigen/SparseCholesky>

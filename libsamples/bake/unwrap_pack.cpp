@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Packs charts into pages: the largest first, each at the first row where its texels and their margin are free.
 #include "bake/unwrap.h"
-#include "core/lists.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -144,15 +143,15 @@ public:
 		{
 			for (int x = at.x + run.begin; x < at.x + run.end; ++x)
 			{
-				word(at.y + run.row, x) |= uint64_t{1} << static_cast<unsigned>(x % 64);
+				m_used[wordOf(at.y + run.row, x)] |= uint64_t{1} << static_cast<unsigned>(x % 64);
 			}
 		}
 	}
 
 private:
-	uint64_t& word(int y, int x)
+	std::size_t wordOf(int y, int x) const
 	{
-		return m_used[static_cast<std::size_t>(y) * m_words + static_cast<std::size_t>(x) / 64];
+		return static_cast<std::size_t>(y) * m_words + static_cast<std::size_t>(x) / 64;
 	}
 
 	// The first x, from `begin` up to `end`, whose bit is set after flipping by `flip`; `end` if there is none.
@@ -160,8 +159,7 @@ private:
 	{
 		for (int x = begin; x < end; x = (x / 64 + 1) * 64)
 		{
-			const uint64_t bits = (m_used[static_cast<std::size_t>(y) * m_words + static_cast<std::size_t>(x) / 64] ^ flip) >>
-								  static_cast<unsigned>(x % 64);
+			const uint64_t bits = (m_used[wordOf(y, x)] ^ flip) >> static_cast<unsigned>(x % 64);
 			if (bits != 0)
 			{
 				return std::min(end, x + std::countr_zero(bits));

@@ -6,6 +6,7 @@
 // Gauss-Seidel: R. Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992). One thread, in a fixed order.
 #include "bake/surface_samples.h"
 
+#include "core/lists.h"
 #include "core/random.h"
 
 #include <glm/geometric.hpp>
@@ -24,11 +25,6 @@ namespace
 {
 
 constexpr float kSameNormal = 0.999F; // cosine; 2.6° changes the direction-dependent part of visibility by about sin 2.6° = 0.045
-
-auto keyOf(glm::dvec3 p)
-{
-	return std::tuple(p.x, p.y, p.z);
-}
 
 // Adds a second value for vertices of two-sided triangles.
 void addBacks(const Level& level, Unknowns& unknowns)
@@ -74,7 +70,8 @@ struct Matrix
 	{
 		const auto begin = column.begin() + static_cast<std::ptrdiff_t>(first[row]);
 		const auto end = column.begin() + static_cast<std::ptrdiff_t>(first[row + 1]);
-		return value[static_cast<std::size_t>(std::lower_bound(begin, end, col) - column.begin())];
+		const auto found = std::lower_bound(begin, end, col) - column.begin();
+		return row == col ? diagonal[row] : value[static_cast<std::size_t>(found)];
 	}
 	double restOf(std::size_t row, const std::vector<double>& x) const
 	{
@@ -145,18 +142,6 @@ struct Equations
 	std::array<std::vector<double>, 3> bent; // right sides of visibility times direction, if requested
 };
 
-void addTo(Matrix& matrix, uint32_t i, uint32_t j, double value)
-{
-	if (i == j)
-	{
-		matrix.diagonal[i] += value;
-	}
-	else
-	{
-		matrix.at(i, j) += value;
-	}
-}
-
 // Contribution of one side of a triangle to the matrix.
 struct Square
 {
@@ -195,7 +180,7 @@ void addSquare(Matrix& matrix, const std::array<uint32_t, 3>& corner, const Squa
 		for (std::size_t j = 0; j < 3; ++j)
 		{
 			const double smooth = (i == j ? 2.0 : -1.0) * kSmooth * square.weight;
-			addTo(matrix, corner[i], corner[j], square.sum[i][j] + smooth);
+			matrix.at(corner[i], corner[j]) += square.sum[i][j] + smooth;
 		}
 	}
 }
@@ -210,19 +195,14 @@ Equations equationsOf(const Level& level, std::span<const double> areas, const U
 		right.assign(bent ? unknowns.count : 0, 0.0);
 	}
 	Random random(seed, 0xfacade);
-	for (std::size_t begin = 0; begin < samples.size();)
+	const auto addTriangle = [&](std::span<const SurfaceSample> of_triangle)
 	{
-		const std::size_t triangle = samples[begin].triangle;
-		std::size_t end = begin;
-		while (end < samples.size() && samples[end].triangle == triangle)
-		{
-			end += 1;
-		}
-		const double each = areas[triangle] / static_cast<double>(end - begin);
+		const std::size_t triangle = of_triangle.front().triangle;
+		const double each = areas[triangle] / static_cast<double>(of_triangle.size());
 		const std::array<std::array<uint32_t, 3>, 2> corners{cornersOf(level, unknowns, triangle, false),
 															 cornersOf(level, unknowns, triangle, true)};
 		std::array<Square, 2> squares{};
-		for (const SurfaceSample& sample : samples.subspan(begin, end - begin))
+		for (const SurfaceSample& sample : of_triangle)
 		{
 			const std::size_t side = sample.back && corners[1] != corners[0] ? 1 : 0;
 			const double noise = (random.next() & 1U) != 0 ? 1.0 : -1.0;
@@ -231,8 +211,9 @@ Equations equationsOf(const Level& level, std::span<const double> areas, const U
 		}
 		addSquare(equations.matrix, corners[0], squares[0]);
 		addSquare(equations.matrix, corners[1], squares[1]);
-		begin = end;
-	}
+	};
+	eachRun(
+		samples, [](const SurfaceSample& a, const SurfaceSample& b) { return a.triangle == b.triangle; }, addTriangle);
 	return equations;
 }
 
@@ -344,13 +325,12 @@ Unknowns unknownsOf(const Level& level, BakeSides sides)
 	const std::vector<glm::vec3> normals = vertexNormals(level);
 	std::vector<uint32_t> order(level.positions.size());
 	std::iota(order.begin(), order.end(), 0U);
-	std::sort(order.begin(), order.end(),
-			  [&](uint32_t a, uint32_t b)
-			  {
-				  const auto key_a = keyOf(level.positions[a]);
-				  const auto key_b = keyOf(level.positions[b]);
-				  return key_a != key_b ? key_a < key_b : a < b;
-			  });
+	const auto key = [&](uint32_t v)
+	{
+		const glm::dvec3 p = level.positions[v];
+		return std::tuple(p.x, p.y, p.z, v);
+	};
+	std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
 	// For each vertex the first one that it shares a value with; values are then numbered in vertex order.
 	std::vector<uint32_t> first_of(order.size());
 	Unknowns unknowns;
@@ -363,11 +343,9 @@ Unknowns unknownsOf(const Level& level, BakeSides sides)
 		for (; end < order.size() && level.positions[order[end]] == level.positions[order[begin]]; ++end)
 		{
 			const uint32_t v = order[end];
-			const auto same = [&](uint32_t other)
-			{
-				return normals[v] == normals[other] || glm::dot(normals[v], normals[other]) > kSameNormal;
-			};
-			const auto found = std::find_if(firsts.begin(), firsts.end(), same);
+			const auto found = std::find_if(
+				firsts.begin(), firsts.end(),
+				[&](uint32_t other) { return normals[v] == normals[other] || glm::dot(normals[v], normals[other]) > kSameNormal; });
 			first_of[v] = found == firsts.end() ? v : *found;
 			if (found == firsts.end())
 			{

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -85,6 +86,19 @@ template <class List, class Value> auto sumOver(const List& list, const Value& v
 inline double sumOver(const std::vector<double>& list)
 {
 	return sumOver(list, [](double value) { return value; });
+}
+
+// use(run) for each longest run of items that are the same as its first one.
+template <class Item, class Same, class Use> void eachRun(std::span<const Item> list, const Same& same, const Use& use)
+{
+	for (std::size_t begin = 0, end = 0; begin < list.size(); begin = end)
+	{
+		while (end < list.size() && same(list[begin], list[end]))
+		{
+			++end;
+		}
+		use(list.subspan(begin, end - begin));
+	}
 }
 
 } // namespace nook

@@ -27,14 +27,13 @@ struct Builtin
 	std::size_t most = 0;
 };
 
-constexpr std::array<Builtin, 7> kBuiltins{
-	{{"cornell", makeCornell},
-	 {"courtyard", makeCourtyard},
-	 {"suburb", makeSuburb},
-	 {"foliage", makeFoliage},
-	 {"heightfield", nullptr, makeHeightfield, kDefaultHeightfieldTriangles, 2, kMaxHeightfieldTriangles},
-	 {"cave", nullptr, makeCave, kDefaultCaveTriangles, kMinCaveTriangles, kMaxCaveTriangles},
-	 {"nulls", makeNulls}}};
+constexpr std::array<Builtin, 7> kBuiltins{{{"cornell", makeCornell},
+											{"courtyard", makeCourtyard},
+											{"suburb", makeSuburb},
+											{"foliage", makeFoliage},
+											{"heightfield", nullptr, makeHeightfield, 131072, 2, 20'000'000},
+											{"cave", nullptr, makeCave, 600'000, 1000, 20'000'000},
+											{"nulls", makeNulls}}};
 
 std::size_t triangleCount(std::string_view text, const Builtin& level)
 {
@@ -94,9 +93,7 @@ void addSlopeCamera(LevelBuilder& builder, const std::string& name, double above
 
 std::vector<std::string_view> builtinNames()
 {
-	std::vector<std::string_view> names;
-	std::transform(kBuiltins.begin(), kBuiltins.end(), std::back_inserter(names), [](const Builtin& one) { return one.name; });
-	return names;
+	return mapped(kBuiltins, [](const Builtin& one) { return one.name; });
 }
 
 Level builtinLevel(std::string_view name)

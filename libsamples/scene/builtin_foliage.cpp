@@ -122,11 +122,10 @@ bool isInside(const Blade& blade, glm::dvec2 p)
 
 Mask maskOf(const std::string& name, int size, const std::vector<Blade>& blades)
 {
-	const auto is_inside = [&](glm::dvec2 p)
-	{
-		return std::any_of(blades.begin(), blades.end(), [p](const Blade& blade) { return isInside(blade, p); });
-	};
-	Mask mask = drawMask(name, size, is_inside);
+	Mask mask =
+		drawMask(name, size,
+				 [&](glm::dvec2 p)
+				 { return std::any_of(blades.begin(), blades.end(), [p](const Blade& blade) { return isInside(blade, p); }); });
 	mask.wrap_u = mask.wrap_v = Wrap::clamp;
 	return mask;
 }

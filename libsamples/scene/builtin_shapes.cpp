@@ -328,23 +328,20 @@ Frame frameAlong(glm::dvec3 at, glm::dvec3 direction)
 
 uint32_t LevelBuilder::addMaterial(const std::string& name)
 {
-	Material material;
-	material.name = name;
-	m_level.material_list.push_back(material);
+	m_level.material_list.emplace_back().name = name;
 	return static_cast<uint32_t>(m_level.material_list.size() - 1);
 }
 
 uint32_t LevelBuilder::addMasked(const std::string& name, Mask mask)
 {
-	Material material;
-	material.name = name;
+	const uint32_t index = addMaterial(name);
+	Material& material = m_level.material_list.back();
 	material.alpha_mode = AlphaMode::mask;
 	material.two_sided = true;
 	material.mask = static_cast<int>(m_level.masks.size());
 	m_level.masks.push_back(std::move(mask));
 	measureAlpha(material, m_level.masks);
-	m_level.material_list.push_back(material);
-	return static_cast<uint32_t>(m_level.material_list.size() - 1);
+	return index;
 }
 
 void LevelBuilder::beginMesh(const std::string& name, uint32_t material)

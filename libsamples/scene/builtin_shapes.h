@@ -112,8 +112,6 @@ void addTube(LevelBuilder& builder, std::span<const glm::dvec3> points, std::spa
 // One flat quad, corner + right × [0, 1] + up × [0, 1]; the texture repeats that often.
 void addCard(LevelBuilder& builder, glm::dvec3 corner, glm::dvec3 right, glm::dvec3 up, glm::dvec2 repeats = {1.0, 1.0});
 
-// Parts of buildings for the built-in levels: columns, balustrades, stairs, archways, pots. All closed.
-
 // Plinth, turned base, swelling shaft, neck, capital and abacus; 3.6 m × `scale` high, 0.94 m wide.
 void addColumn(LevelBuilder& builder, glm::dvec3 foot, double scale, int segments);
 
@@ -139,8 +137,6 @@ void addBarrel(LevelBuilder& builder, glm::dvec3 foot, int segments);
 
 // A cube of that width made of boards around a box, rotated.
 void addCrate(LevelBuilder& builder, glm::dvec3 foot, double width, double angle_rad);
-
-// Procedural masks with smooth edges, and objects made of them: leaves, grass, wire netting.
 
 // A twig with leaves, growing upward from the middle of the lower edge.
 Mask leafMask();

@@ -20,6 +20,12 @@ namespace
 constexpr double kWidth = 512.0;
 constexpr double kBottom = -60.0;
 
+// Smooth step with continuous second derivatives.
+double fade(double t)
+{
+	return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+}
+
 // One of eight gradients at a lattice point, chosen by a 32-bit integer hash.
 glm::dvec2 gradientAt(int x, int y, uint32_t seed)
 {
@@ -45,10 +51,6 @@ double noiseAt(glm::dvec2 p, uint32_t seed)
 	const glm::dvec2 f = p - cell;
 	const int x = static_cast<int>(cell.x);
 	const int y = static_cast<int>(cell.y);
-	const auto fade = [](double t)
-	{
-		return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
-	};
 	const auto corner = [&](int dx, int dy)
 	{
 		return glm::dot(gradientAt(x + dx, y + dy, seed), f - glm::dvec2(dx, dy));
@@ -250,10 +252,6 @@ double noiseAt(glm::dvec3 p, uint32_t seed)
 {
 	const glm::dvec3 cell = {std::floor(p.x), std::floor(p.y), std::floor(p.z)};
 	const glm::dvec3 f = p - cell;
-	const auto fade = [](double t)
-	{
-		return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
-	};
 	const glm::dvec3 share = {fade(f.x), fade(f.y), fade(f.z)};
 	double sum = 0.0;
 	for (int corner = 0; corner < 8; ++corner)
@@ -269,12 +267,6 @@ double noiseAt(glm::dvec3 p, uint32_t seed)
 		sum += weight * glm::dot(gradientAt(at, seed), f - glm::dvec3(step[0], step[1], step[2]));
 	}
 	return sum;
-}
-
-// Smooth minimum with a blend of about `width`.
-double lesserOf(double a, double b, double width)
-{
-	return 0.5 * (a + b - std::sqrt((a - b) * (a - b) + width * width));
 }
 
 // Centre of the tunnel at x.
@@ -303,15 +295,11 @@ double wallAt(double x, glm::dvec3 way, double step_m)
 	if (down > 0.05)
 	{
 		const double waves = step_m < 0.4 ? 0.08 * noiseAt(at * (1.0 / 1.7), 31) : 0.0;
-		radius = lesserOf(radius, (kSediment + waves) / down, 0.3);
+		const double floor = (kSediment + waves) / down;
+		constexpr double kBlend = 0.3; // about the width of the smooth minimum's blend
+		radius = 0.5 * (radius + floor - std::sqrt((radius - floor) * (radius - floor) + kBlend * kBlend));
 	}
 	return std::max(radius, 0.7);
-}
-
-double outsideAt(double x, glm::dvec3 way)
-{
-	const glm::dvec3 at = glm::dvec3(x, 0.0, 0.0) + kRockRadius * way;
-	return kRockRadius + 2.0 * noiseAt(at * (1.0 / 13.0), 41);
 }
 
 // A ring of the surface: its position along x, and from the wall (0) to the outside (1).
@@ -351,7 +339,8 @@ public:
 				const SinCos turn = sinCosOf(2.0 * kPi * static_cast<double>(j) / static_cast<double>(around));
 				const glm::dvec3 way(0.0, turn.cos, turn.sin);
 				const double wall = station.out < 1.0 ? wallAt(station.x, way, step_m) : 0.0;
-				const double outside = station.out > 0.0 ? outsideAt(station.x, way) : 0.0;
+				const glm::dvec3 rock = glm::dvec3(station.x, 0.0, 0.0) + kRockRadius * way;
+				const double outside = station.out > 0.0 ? kRockRadius + 2.0 * noiseAt(rock * (1.0 / 13.0), 41) : 0.0;
 				m_points.push_back(middleAt(station.x) + way * (wall + station.out * (outside - wall)));
 			}
 		}

@@ -236,9 +236,7 @@ void checkCameras(const CameraOptions& options)
 	if (options.camera_from_world && !isRigid(*options.camera_from_world))
 	{
 		refuseInput("--world-to-camera", "a matrix that scales, shears, mirrors or projects",
-					"a rotation "
-					"and a translation, column by column",
-					ExitCode::usage);
+					"a rotation and a translation, column by column", ExitCode::usage);
 	}
 	if (options.projection)
 	{

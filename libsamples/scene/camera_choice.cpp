@@ -39,6 +39,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -464,14 +465,9 @@ double largestPlane(const Site& site, const CameraCandidate& candidate, const Sa
 	}
 	std::sort(planes.begin(), planes.end());
 	std::size_t most = 0;
-	for (std::size_t first = 0, next = 0; first < planes.size(); first = next)
-	{
-		while (next < planes.size() && planes[next] == planes[first])
-		{
-			next += 1;
-		}
-		most = std::max(most, next - first);
-	}
+	using Plane = std::array<int64_t, 4>;
+	eachRun(std::span<const Plane>(planes), std::equal_to<>(),
+			[&most](std::span<const Plane> run) { most = std::max(most, run.size()); });
 	return static_cast<double>(most) / (kColumns * kRows);
 }
 
@@ -531,11 +527,8 @@ Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candi
 // Fraction of the cells not yet seen; both lists are sorted.
 double shareOfNew(const std::vector<uint64_t>& cells, const std::vector<uint64_t>& seen)
 {
-	const auto is_known = [&](uint64_t cell)
-	{
-		return std::binary_search(seen.begin(), seen.end(), cell);
-	};
-	const auto known = std::count_if(cells.begin(), cells.end(), is_known);
+	const auto known = std::count_if(cells.begin(), cells.end(),
+									 [&](uint64_t cell) { return std::binary_search(seen.begin(), seen.end(), cell); });
 	return cells.empty() ? 0.0 : 1.0 - static_cast<double>(known) / static_cast<double>(cells.size());
 }
 
@@ -692,21 +685,20 @@ const LevelCamera& cameraNamed(const Level& level, std::string_view name)
 std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const RunSettings& run)
 {
 	assert(count >= 1);
-	constexpr std::size_t kUsual = 12; // views that the stages of a verb need
-	const auto wanted = static_cast<std::size_t>(count);
+	constexpr int kUsual = 12; // views that the stages of a verb need
 	CameraMemo& memo = tracer.cameraMemo();
-	std::vector<LevelCamera> cameras = memo.find(wanted);
-	if (cameras.empty())
+	const std::lock_guard lock(memo.mutex);
+	if (memo.chosen < count)
 	{
-		cameras = bestCameras(tracer, static_cast<int>(std::max(wanted, kUsual)), run);
-		memo.keep(std::max(wanted, kUsual), cameras);
-		cameras.resize(std::min(wanted, cameras.size()));
+		memo.cameras = bestCameras(tracer, std::max(count, kUsual), run);
+		memo.chosen = std::max(count, kUsual);
 	}
-	if (cameras.empty())
+	if (memo.cameras.empty())
 	{
 		refuseInput(tracer.level().name + ": cameras", "no view that shows anything of it", "an explicit camera (eye, target)");
 	}
-	return cameras;
+	const std::size_t found = std::min(static_cast<std::size_t>(count), memo.cameras.size());
+	return {memo.cameras.begin(), memo.cameras.begin() + static_cast<std::ptrdiff_t>(found)};
 }
 
 CamerasOfLevel camerasOf(const Tracer& tracer, std::string_view name, int automatic, const RunSettings& run)

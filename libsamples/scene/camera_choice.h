@@ -9,8 +9,6 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
-#include <algorithm>
-#include <cstddef>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -20,28 +18,12 @@
 namespace nook
 {
 
-// The best views of a tracer's level, kept with it because several stages look from the same ones. Safe to use from any thread.
-class CameraMemo
+// The best views of a tracer's level, kept with it because several stages look from the same ones.
+struct CameraMemo
 {
-public:
-	// The first `count`, or all that show something; empty if so many were never chosen.
-	std::vector<LevelCamera> find(std::size_t count)
-	{
-		const std::lock_guard lock(m_mutex);
-		const std::size_t found = m_chosen < count ? 0 : std::min(count, m_cameras.size());
-		return {m_cameras.begin(), m_cameras.begin() + static_cast<std::ptrdiff_t>(found)};
-	}
-	void keep(std::size_t chosen, const std::vector<LevelCamera>& cameras)
-	{
-		const std::lock_guard lock(m_mutex);
-		m_chosen = chosen;
-		m_cameras = cameras;
-	}
-
-private:
-	std::mutex m_mutex;
-	std::size_t m_chosen = 0;
-	std::vector<LevelCamera> m_cameras;
+	std::mutex mutex;
+	int chosen = 0;                   // views that were asked for
+	std::vector<LevelCamera> cameras; // that show something
 };
 
 // The level's camera with that name. Throws Error (usage) with the list of names.
@@ -74,8 +56,6 @@ inline constexpr double kInsideShare = 0.95; // a point at or above this counts 
 
 // Throws Error (invalid_input) if `eye` is inside a solid; `name` is the camera's.
 void checkOutside(const Tracer& tracer, glm::dvec3 eye, const std::string& name);
-
-// A level and what is asked for → the views to take pictures from.
 
 struct CameraOptions
 {

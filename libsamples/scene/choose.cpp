@@ -95,11 +95,9 @@ uint64_t reachedBy(const std::vector<std::string_view>& steps, uint64_t reached,
 bool hasExtra(const std::vector<std::string>& extras, std::string_view glob)
 {
 	const bool with_value = glob.find('=') != std::string_view::npos;
-	const auto fits = [&](std::string_view extra)
-	{
-		return isGlobOf(glob, with_value ? extra : extra.substr(0, extra.find('=')));
-	};
-	return std::any_of(extras.begin(), extras.end(), fits);
+	return std::any_of(extras.begin(), extras.end(),
+					   [&](std::string_view extra)
+					   { return isGlobOf(glob, with_value ? extra : extra.substr(0, extra.find('='))); });
 }
 
 std::vector<std::string_view> namesDownTo(const Level& level, const Mesh& mesh)

@@ -46,7 +46,6 @@ private:
 	void addPolygon(std::span<const uint32_t> corners, const FileMesh& mesh);
 
 	std::vector<glm::uvec3> m_triangles; // of the mesh
-	std::vector<glm::dvec3> m_corners;   // of a polygon
 };
 
 // Triangulates a polygon in space using its own corners; supports concave ones and holes connected by bridges.

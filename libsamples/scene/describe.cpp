@@ -6,7 +6,7 @@
 #include "core/math.h"
 #include "core/text.h"
 #include "core/words.h"
-#include "scene/gbuffer_file.h"
+#include "scene/gbuffer.h"
 #include "scene/level_glb.h"
 #include "scene/load_parts.h"
 #include "scene/ray_triangle.h"
@@ -51,16 +51,6 @@ void addBounds(const Bounds& bounds, Facts& facts)
 		facts.line("origin: (" + fixedText(origin.x, 0) + ", " + fixedText(origin.y, 0) + ", " + fixedText(origin.z, 0) +
 				   ") m, which files of 32-bit positions count from: the translation of their nodes");
 	}
-}
-
-double areaOf(const Level& level)
-{
-	double twice = 0.0;
-	for (std::size_t t = 0; t < level.triangles.size(); ++t)
-	{
-		twice += glm::length(twiceAreaOf(level, t));
-	}
-	return 0.5 * twice;
 }
 
 // Paths of parts as patterns may name them, each once.
@@ -162,17 +152,6 @@ void addEstimate(const std::string& name, const AssetEstimate& estimate, Facts& 
 	facts.number("expected_" + name + "_memory_bytes", std::floor(estimate.memory_bytes));
 }
 
-std::string scaleText(const LevelFacts& facts)
-{
-	switch (scaleDoubt(facts))
-	{
-	case ScaleDoubt::small: return "less than a metre across: maybe it is in other units (--unit)";
-	case ScaleDoubt::large: return "more than 5 km across: maybe it is in other units (--unit)";
-	case ScaleDoubt::none: break;
-	}
-	return "plausible in metres";
-}
-
 // The asset that suits the level, with estimates of its cost.
 void addAdvice(const Level& level, int threads, Facts& facts)
 {
@@ -181,7 +160,7 @@ void addAdvice(const Level& level, int threads, Facts& facts)
 	const AssetEstimate volumes = volumesEstimate(level, found);
 	const AssetEstimate bake = bakeEstimate(level, kRays);
 	const Advice advice = adviceFor(found, volumes, bake);
-	const std::string suits = advice.asset == Asset::volumes ? "masks" : "bake"; // masks err less than sums on every level measured
+	const std::string suits = advice.bake ? "bake" : "masks"; // masks err less than sums on every level measured
 	const std::string why =
 		advice.why + std::string(advice.split ? "; with --max-error, since much of the surface lies in large triangles" : "");
 	facts.whole("components", found.components);
@@ -208,9 +187,8 @@ void addAdvice(const Level& level, int threads, Facts& facts)
 	facts.text("suits", suits);
 	facts.text("why", why);
 	facts.line("suits: " + suits + ", since " + why);
-	facts.line(advice.asset == Asset::volumes
-				   ? "  nook volumes --masks makes the file, --method aov-mask draws it"
-				   : "  nook bake makes the file; nook volumes --masks --detail auto errs less and takes more bytes");
+	facts.line(advice.bake ? "  nook bake makes the file; nook volumes --masks --detail auto errs less and takes more bytes"
+						   : "  nook volumes --masks makes the file, --method aov-mask draws it");
 }
 
 // The values of a channel, over all pixels.
@@ -329,22 +307,11 @@ constexpr double kMemoryATriangle = 650.0; // for either asset
 constexpr double kMemoryAtLeast = 20e6;
 constexpr double kOnePlane = 1e-4; // sine of the angle up to which volumes merge neighbours
 
-bool isOnePlane(glm::dvec3 a, glm::dvec3 b)
-{
-	const double lengths = glm::length(a) * glm::length(b);
-	return lengths > 0.0 && glm::dot(a, b) > 0.0 && glm::length(glm::cross(a, b)) <= kOnePlane * lengths;
-}
-
 void findComponents(const Level& level, const std::vector<uint32_t>& place, LevelFacts& facts, int threads)
 {
 	const std::size_t count = level.triangles.size();
-	std::vector<glm::uvec3> placed(count);
-	for (std::size_t t = 0; t < count; ++t)
-	{
-		const glm::uvec3 corners = level.triangles[t];
-		placed[t] = {place[corners.x], place[corners.y], place[corners.z]};
-	}
-	const EdgeTable edges(placed, {}, place.size(), threads);
+	const EdgeTable edges(mapped(level.triangles, [&](glm::uvec3 t) { return glm::uvec3(place[t.x], place[t.y], place[t.z]); }), {},
+						  place.size(), threads);
 	Groups components(count);
 	Groups patches(count);
 	std::vector<uint8_t> open(count, 0);
@@ -357,7 +324,10 @@ void findComponents(const Level& level, const std::vector<uint32_t>& place, Leve
 					   components.join(edge[0].triangle(), side.triangle());
 					   open[side.triangle()] |= pair ? 0 : 1;
 				   }
-				   if (pair && isOnePlane(twiceAreaOf(level, edge[0].triangle()), twiceAreaOf(level, edge[1].triangle())))
+				   const glm::dvec3 a = twiceAreaOf(level, edge.front().triangle());
+				   const glm::dvec3 b = twiceAreaOf(level, edge.back().triangle());
+				   const double lengths = glm::length(a) * glm::length(b);
+				   if (pair && lengths > 0.0 && glm::dot(a, b) > 0.0 && glm::length(glm::cross(a, b)) <= kOnePlane * lengths)
 				   {
 					   patches.join(edge[0].triangle(), edge[1].triangle());
 				   }
@@ -429,7 +399,7 @@ void describeLevel(const LoadedLevel& loaded, int threads, Facts& facts)
 	facts.line("level: " + oneLine(level.name) + ", " + counted(level.triangles.size(), "triangle", "triangles") + " of " +
 			   counted(level.positions.size(), "vertex", "vertices") + " in " + counted(level.meshes.size(), "mesh", "meshes"));
 	addBounds(boundsOf(level), facts);
-	const double area = areaOf(level);
+	const double area = sumOver(areasOf(level));
 	facts.number("area_m2", area);
 	facts.line("surface: " + roundedText(area, 6) + " m2");
 	addParts(level, facts);
@@ -517,22 +487,23 @@ Advice adviceFor(const LevelFacts& facts, const AssetEstimate& volumes, const As
 	const bool split = facts.coarse_share >= 0.25;
 	if (volumes.bytes > kMuch_bytes)
 	{
-		return {Asset::bake, "volumes of so many polygons take minutes a picture and tens of megabytes", split};
+		return {true, "volumes of so many polygons take minutes a picture and tens of megabytes", split};
 	}
 	if (volumes.bytes > kSmoothMesh * bake.bytes)
 	{
-		return {Asset::bake, "each facet of its smooth surface would be a volume, while vertices are few", split};
+		return {true, "each facet of its smooth surface would be a volume, while vertices are few", split};
 	}
 	if (facts.coarse_share < 0.5)
 	{
-		return {Asset::bake, "most of the surface lies in triangles that are small against the distance", split};
+		return {true, "most of the surface lies in triangles that are small against the distance", split};
 	}
-	return {Asset::volumes, "most of the surface lies in triangles that are larger than its shadows", false};
+	return {false, "most of the surface lies in triangles that are larger than its shadows", false};
 }
 
-ScaleDoubt scaleDoubt(const LevelFacts& facts)
+std::string scaleText(const LevelFacts& facts)
 {
-	return facts.diagonal_m < 1.0 ? ScaleDoubt::small : facts.diagonal_m > 5000.0 ? ScaleDoubt::large : ScaleDoubt::none;
+	const std::string size = facts.diagonal_m < 1.0 ? "less than a metre" : facts.diagonal_m > 5000.0 ? "more than 5 km" : "";
+	return size.empty() ? "plausible in metres" : size + " across: maybe it is in other units (--unit)";
 }
 
 } // namespace nook

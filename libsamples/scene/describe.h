@@ -22,8 +22,6 @@ bool isImageName(const std::string& path);
 // A G-buffer, visibility or any other picture.
 void describeImage(const Image& image, Facts& facts);
 
-// Characterises a clean level and recommends an asset with its expected cost, before any is made.
-
 // A round length: a fortieth of the level's diagonal, at most 1.5 m (AOV §6).
 double suggestedRadius(const Level& level);
 
@@ -52,25 +50,15 @@ struct AssetEstimate
 AssetEstimate volumesEstimate(const Level& level, const LevelFacts& facts);
 AssetEstimate bakeEstimate(const Level& level, int rays);
 
-enum class Asset
-{
-	volumes,
-	bake,
-};
 struct Advice
 {
-	Asset asset = Asset::volumes;
+	bool bake = false;    // else volumes
 	const char* why = ""; // a clause, "since …"
 	bool split = false;   // a bake needs --max-error, since a quarter of the surface lies in large triangles
 };
 Advice adviceFor(const LevelFacts& facts, const AssetEstimate& volumes, const AssetEstimate& bake);
 
-enum class ScaleDoubt
-{
-	none,
-	small, // the diagonal is below a metre: possibly other units
-	large, // larger than 5 km
-};
-ScaleDoubt scaleDoubt(const LevelFacts& facts);
+// Whether the level's size is plausible in metres.
+std::string scaleText(const LevelFacts& facts);
 
 } // namespace nook

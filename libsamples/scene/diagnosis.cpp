@@ -128,12 +128,14 @@ public:
 		measure();
 		std::vector<uint8_t> inward(closed, 0);
 		std::vector<Point> points; // one of each inward part
-		for (uint32_t part = 0; part < closed; ++part)
+		for (uint32_t i = 0; i < closed; ++i)
 		{
-			if (isInward(m_parts[part]))
+			const SolidPart& part = m_parts[i];
+			const double flat_m3 = kFlat * glm::length(part.bounds.most - part.bounds.least) * part.area_m2;
+			if (!part.both_sides && part.volume_m3 < -flat_m3)
 			{
-				inward[part] = 1;
-				points.push_back({cornersOf(m_parts[part].first_triangle)[0], m_parts[part].bounds, part});
+				inward[i] = 1;
+				points.push_back({cornersOf(part.first_triangle)[0], part.bounds, i});
 			}
 		}
 		if (points.empty())
@@ -202,11 +204,6 @@ private:
 			part.sum += a + b + c;
 			part.corners += 3.0;
 		}
-	}
-
-	static bool isInward(const SolidPart& part)
-	{
-		return !part.both_sides && part.volume_m3 < -kFlat * glm::length(part.bounds.most - part.bounds.least) * part.area_m2;
 	}
 
 	std::vector<Point> allPoints() const
@@ -371,13 +368,6 @@ private:
 		return marks;
 	}
 
-	// Mesh and triangle in the original level.
-	std::string placeOf(std::size_t triangle) const
-	{
-		const Mesh& mesh = meshOf(triangle);
-		return "mesh '" + mesh.name + "', triangle " + std::to_string(triangle - mesh.first_triangle);
-	}
-
 	const Mesh& meshOf(std::size_t triangle) const
 	{
 		auto mesh = std::upper_bound(m_level.meshes.begin(), m_level.meshes.end(), triangle,
@@ -390,7 +380,9 @@ private:
 	{
 		if (count > 0)
 		{
-			report(m_diagnosis.findings, id, {count, placeOf(first_triangle)});
+			const Mesh& mesh = meshOf(first_triangle);
+			const std::string number = std::to_string(first_triangle - mesh.first_triangle);
+			report(m_diagnosis.findings, id, {count, "mesh '" + mesh.name + "', triangle " + number});
 		}
 	}
 

@@ -95,8 +95,6 @@ private:
 std::optional<double> numberAt(const FbxNode& node, std::size_t index);
 std::optional<int64_t> wholeAt(const FbxNode& node, std::size_t index);
 
-// Objects of an FBX file with their properties and connections, and the transforms of its nodes.
-
 // The entries of a Properties70, by name.
 class FbxProperties
 {
@@ -188,8 +186,6 @@ struct FbxPlace
 
 // All nodes, those of the scene first: parents before children, children in file order. Throws Error for a cycle of nodes.
 std::vector<FbxPlace> placesOf(const FbxObjects& objects);
-
-// Reads a Geometry of an FBX file: points, polygons, corner attributes, and its pose from skins and blend shapes.
 
 // Values at the corners of a mesh.
 struct FbxLayer

@@ -443,11 +443,9 @@ FbxMesh readFbxMesh(const FbxObjects& objects, const FbxObject& geometry)
 bool isPosed(const FbxObjects& objects, const FbxObject& geometry)
 {
 	const std::vector<std::size_t> clusters = partsOfParts(objects, geometry, "Skin", "Cluster");
-	const auto has_bone = [&](std::size_t cluster)
-	{
-		return !objects.partsOf(objects[cluster], "Model").empty();
-	};
-	return std::any_of(clusters.begin(), clusters.end(), has_bone) || !targetsOfMesh(objects, geometry).empty();
+	return std::any_of(clusters.begin(), clusters.end(),
+					   [&](std::size_t cluster) { return !objects.partsOf(objects[cluster], "Model").empty(); }) ||
+		   !targetsOfMesh(objects, geometry).empty();
 }
 
 std::vector<glm::dmat4> poseFbxMesh(const FbxObjects& objects, const FbxObject& geometry, const FbxPlace& place,

@@ -50,14 +50,9 @@ FileAxes axesOf(const FbxObjects& objects)
 	return axes;
 }
 
-struct Texture
+struct Texture : PlacedPicture // an empty name means none; v upward
 {
-	std::string name; // empty: none
-	std::string bytes;
-	Wrap wrap_u = Wrap::repeat;
-	Wrap wrap_v = Wrap::repeat;
 	std::string uv_set;
-	glm::dmat3 uv_of_set{1.0}; // v upward
 };
 
 // One placement of a mesh.
@@ -246,7 +241,8 @@ private:
 			{
 				const FbxObject& object = m_objects[index];
 				Texture texture;
-				texture.name = fileOf(object);
+				texture.name = m_file.textBelow(*object.node, "RelativeFilename");
+				texture.name = texture.name.empty() ? m_file.textBelow(*object.node, "FileName") : texture.name;
 				if (const FbxNode* const content = contentOf(object))
 				{
 					texture.bytes = bytesOf(*content, object);
@@ -264,12 +260,6 @@ private:
 			}
 		}
 		return {};
-	}
-
-	std::string fileOf(const FbxObject& texture) const
-	{
-		const std::string relative = m_file.textBelow(*texture.node, "RelativeFilename");
-		return relative.empty() ? m_file.textBelow(*texture.node, "FileName") : relative;
 	}
 
 	// Picture embedded in its Video object; null if there is none.
@@ -458,23 +448,18 @@ private:
 				m_shared.emplace(instance.geometry, m_mesh);
 			}
 		}
-		checkTriangles();
-		pose(instance, geometry);
-		for (const auto& [material, polygons] : groupsOf(instance))
-		{
-			sendGroup(material, polygons);
-		}
-		m_sources += m_mesh.points.size();
-	}
-
-	void checkTriangles()
-	{
 		m_triangles += m_mesh.corners.size() - std::min(m_mesh.corners.size(), 2 * m_mesh.ends.size());
 		if (m_triangles > kMaxTriangles)
 		{
 			refuseInput(m_file.path(), "more than " + std::to_string(kMaxTriangles) + " triangles, counting every instance",
 						"at most so many");
 		}
+		pose(instance, geometry);
+		for (const auto& [material, polygons] : groupsOf(instance))
+		{
+			sendGroup(material, polygons);
+		}
+		m_sources += m_mesh.points.size();
 	}
 
 	// Polygons grouped by material number, in order of first use.

@@ -39,8 +39,7 @@ void checkVersion(const std::string& path, int64_t version)
 									 ? std::to_string(version)
 									 : std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 100);
 		refuseInput(path, "FBX " + text,
-					"7.1 to 7.7: export it again as FBX 2011 or newer, or convert it (Autodesk FBX "
-					"Converter, Blender)",
+					"7.1 to 7.7: export it again as FBX 2011 or newer, or convert it (Autodesk FBX Converter, Blender)",
 					ExitCode::unsupported);
 	}
 }

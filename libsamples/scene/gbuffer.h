@@ -106,6 +106,9 @@ GBuffer gbufferFrom(Image image, const std::string& path, const GBufferImport& i
 // Index of the depth channel that readGBuffer() would use; throws an Error listing the channels of `image`.
 int depthChannel(const Image& image, const std::string& path, const std::string& wanted);
 
+// True if a depth channel can be recognised by name.
+bool looksLikeGBuffer(const Image& image);
+
 // Pixels of a G-buffer with linear depth that show a surface: 1, else 0; rows from the top. Needs no camera. Throws like
 // readGBuffer.
 struct SurfaceMask

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/gbuffer_file.h"
+#include "scene/gbuffer.h"
 
 #include "core/lists.h"
 #include "core/round.h"
@@ -22,6 +22,40 @@ namespace nook
 {
 namespace
 {
+
+// The file being read, and its errors.
+struct GBufferFile
+{
+	const std::string& path;
+	const Image& image;
+
+	// Throw Error (invalid_input).
+	[[noreturn]] void refuse(const std::string& element, const std::string& found, const std::string& expected) const
+	{
+		refuseInput(path + ": " + element, found, expected);
+	}
+	[[noreturn]] void refusePixel(const std::string& channel, std::size_t pixel, const std::string& found,
+								  const std::string& expected) const
+	{
+		const auto width = static_cast<std::size_t>(image.width_px);
+		refuse(channel + ", pixel " + std::to_string(pixel % width) + "," + std::to_string(pixel / width), found, expected);
+	}
+
+	std::string channelName(int index) const
+	{
+		return "channel " + image.channels[static_cast<std::size_t>(index)];
+	}
+};
+
+// For errors: six digits, or the name of a non-finite value.
+std::string shortText(double value)
+{
+	if (!std::isfinite(value))
+	{
+		return std::isnan(value) ? "NaN" : value > 0.0 ? "infinity" : "-infinity";
+	}
+	return roundedText(value, 6);
+}
 
 ImageMatrix imageMatrix(const std::string& key, const glm::dmat4& m, bool wide)
 {
@@ -108,14 +142,6 @@ void checkRigid(const GBufferFile& file, const glm::dmat4& m)
 		file.refuse("worldToCamera", finite && off < 1e-3 ? "a mirrored matrix" : "one that is not a rotation and a translation",
 					"a motion in metres, column by column, into a right-handed view space that looks down -z (world-to-camera)");
 	}
-}
-
-// Position error due to 32-bit entries: |R'ᵀ(p − t') − Rᵀ(p − t)| ≤ ‖ΔR‖ |t − p| + |Δt|, with half a unit in the last place, 2⁻²⁵,
-// for each of R's nine entries and 2⁻²⁵ of its size, at most twice over, for t. The part proportional to |p| is that of 32-bit
-// depth itself.
-double viewError(const FoundMatrix& found)
-{
-	return found.narrow ? 2.5 * 0x1p-24 * glm::length(glm::dvec3(found.matrix[3])) : 0.0;
 }
 
 Projector projectorFor(const GBufferFile& file, const glm::dmat4& projection)
@@ -343,6 +369,126 @@ double halfStepOf(const Image& image, int channel)
 	return 0.0;
 }
 
+// Converts depths to metres along the view direction, with error bounds. Keeps references to all its arguments.
+class DepthReader
+{
+public:
+	DepthReader(const GBufferFile& file, const GBufferImport& import, int channel, const Projector& projector)
+		: m_file(file), m_import(import), m_channel(channel), m_error_channel(file.image.channel("depth_error")),
+		  m_projector(projector)
+	{
+		const std::vector<uint8_t>& halves = file.image.halves;
+		m_rounding = !halves.empty() && halves[static_cast<std::size_t>(channel)] != 0 ? kHalfRoundoff : kUnitRoundoff;
+		if (import.depth == DepthKind::device)
+		{
+			const ViewLine centre = lineAt(file.image.values.size() / file.image.channels.size() / 2);
+			const double at0 = projector.depthOfDevice(ndc(0.0), centre);
+			const double at1 = projector.depthOfDevice(ndc(1.0), centre);
+			// A depth below 0 lies beyond infinity: infinite projections with a slightly moved far plane.
+			m_far_device = at1 < 0.0 || (at0 >= 0.0 && at1 > at0) ? 1.0 : 0.0;
+			m_half_step = halfStepOf(file.image, channel);
+		}
+	}
+
+	// Metres along the view direction; +inf for sky. Throws like readGBuffer.
+	float depthOf(std::size_t pixel) const
+	{
+		const auto depth = static_cast<float>(alongView(pixel));
+		if (!(depth > 0.0F)) // a distance that becomes 0 along this line
+		{
+			m_file.refusePixel(m_file.channelName(m_channel), pixel,
+							   shortText(static_cast<double>(m_file.image.at(pixel, m_channel))),
+							   "a depth along the view direction that 32 bits hold, above 0");
+		}
+		return depth;
+	}
+
+	// True if depths may be off by more than their rounding to 32 bits.
+	bool hasErrors() const
+	{
+		return m_error_channel >= 0 || m_import.depth == DepthKind::device || m_rounding > kUnitRoundoff;
+	}
+
+	// Upper bound in metres by which a surface pixel's depth may be too large. Throws like readGBuffer.
+	float errorOf(std::size_t pixel, float depth_m) const
+	{
+		if (m_error_channel >= 0)
+		{
+			const float error_m = m_file.image.at(pixel, m_error_channel);
+			if (!(error_m >= 0.0F && std::isfinite(error_m)))
+			{
+				m_file.refusePixel("channel depth_error", pixel, shortText(static_cast<double>(error_m)),
+								   "metres by which the depth may be off, from 0");
+			}
+			return error_m;
+		}
+		const auto depth = static_cast<double>(depth_m);
+		if (m_import.depth != DepthKind::device)
+		{
+			return static_cast<float>(depth * m_rounding);
+		}
+		// Rounding of the file, of the buffer, and of the interpolation in 32 bits.
+		const auto value = static_cast<double>(m_file.image.at(pixel, m_channel));
+		const double error = value * (m_rounding + kUnitRoundoff) + m_half_step;
+		const double nearer = m_projector.depthOfDevice(ndc(m_far_device > 0.5 ? value - error : value + error), lineAt(pixel));
+		const double too_great = nearer > 0.0 && nearer < depth ? depth - nearer : 0.0;
+		return static_cast<float>(too_great + depth * kUnitRoundoff); // `depth_m` is rounded too
+	}
+
+private:
+	double ndc(double device) const
+	{
+		return m_import.clip == ClipRange::zero_to_one ? device : 2.0 * device - 1.0;
+	}
+
+	ViewLine lineAt(std::size_t pixel) const
+	{
+		const auto width = static_cast<std::size_t>(m_file.image.width_px);
+		return m_projector.lineOf({static_cast<double>(pixel % width) + 0.5, static_cast<double>(pixel / width) + 0.5});
+	}
+
+	// Metres, before rounding to 32 bits.
+	double alongView(std::size_t pixel) const
+	{
+		if (m_import.depth == DepthKind::device)
+		{
+			return fromDevice(pixel);
+		}
+		const double metres = metresOf(m_file, m_channel, pixel, m_import.sky_depth_m);
+		return m_import.depth == DepthKind::distance ? metres / glm::length(lineAt(pixel).along) : metres;
+	}
+
+	double fromDevice(std::size_t pixel) const
+	{
+		const auto value = static_cast<double>(m_file.image.at(pixel, m_channel));
+		if (!(value >= 0.0 && value <= 1.0))
+		{
+			m_file.refusePixel(m_file.channelName(m_channel), pixel, shortText(value), "device depth from 0 to 1");
+		}
+		if (value == m_far_device)
+		{
+			return kInfinity;
+		}
+		const double depth = m_projector.depthOfDevice(ndc(value), lineAt(pixel));
+		if (!(depth > 0.0))
+		{
+			m_file.refusePixel(m_file.channelName(m_channel), pixel,
+							   shortText(value) + ", which is behind the camera of this projection",
+							   "device depth of the projection and the clip range given (clip)");
+		}
+		return depth >= m_import.sky_depth_m ? kInfinity : depth;
+	}
+
+	const GBufferFile& m_file;
+	const GBufferImport& m_import;
+	int m_channel;
+	int m_error_channel; // −1: none
+	const Projector& m_projector;
+	double m_rounding = 0.0;  // relative rounding of the file's numbers
+	double m_half_step = 0.0; // for device depth
+	double m_far_device = 1.0;
+};
+
 } // namespace
 
 std::string gbufferBytes(const GBuffer& gbuffer, const Notes& notes)
@@ -404,7 +550,10 @@ GBuffer gbufferFrom(Image image, const std::string& path, const GBufferImport& i
 	gbuffer.width_px = image.width_px;
 	gbuffer.height_px = image.height_px;
 	gbuffer.view = {view.matrix, projection.matrix};
-	gbuffer.view_error_m = viewError(view);
+	// Position error due to 32-bit entries: |R'ᵀ(p − t') − Rᵀ(p − t)| ≤ ‖ΔR‖ |t − p| + |Δt|, with half a unit in the last place,
+	// 2⁻²⁵, for each of R's nine entries and 2⁻²⁵ of its size, at most twice over, for t. The part proportional to |p| is that of
+	// 32-bit depth itself.
+	gbuffer.view_error_m = view.narrow ? 2.5 * 0x1p-24 * glm::length(glm::dvec3(view.matrix[3])) : 0.0;
 	gbuffer.depth.resize(image.values.size() / image.channels.size());
 	const DepthReader depth(file, import, channel, projector);
 	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
@@ -467,126 +616,6 @@ int depthChannel(const Image& image, const std::string& path, const std::string&
 bool looksLikeGBuffer(const Image& image)
 {
 	return depthByName(image) >= 0;
-}
-
-std::string shortText(double value)
-{
-	if (!std::isfinite(value))
-	{
-		return std::isnan(value) ? "NaN" : value > 0.0 ? "infinity" : "-infinity";
-	}
-	return roundedText(value, 6);
-}
-
-void GBufferFile::refuse(const std::string& element, const std::string& found, const std::string& expected) const
-{
-	refuseInput(path + ": " + element, found, expected);
-}
-
-void GBufferFile::refusePixel(const std::string& channel, std::size_t pixel, const std::string& found,
-							  const std::string& expected) const
-{
-	const auto width = static_cast<std::size_t>(image.width_px);
-	refuse(channel + ", pixel " + std::to_string(pixel % width) + "," + std::to_string(pixel / width), found, expected);
-}
-
-DepthReader::DepthReader(const GBufferFile& file, const GBufferImport& import, int channel, const Projector& projector)
-	: m_file(file), m_import(import), m_channel(channel), m_error_channel(file.image.channel("depth_error")), m_projector(projector)
-{
-	const std::vector<uint8_t>& halves = file.image.halves;
-	m_rounding = !halves.empty() && halves[static_cast<std::size_t>(channel)] != 0 ? kHalfRoundoff : kUnitRoundoff;
-	if (import.depth == DepthKind::device)
-	{
-		const ViewLine centre = lineAt(file.image.values.size() / file.image.channels.size() / 2);
-		const double at0 = projector.depthOfDevice(ndc(0.0), centre);
-		const double at1 = projector.depthOfDevice(ndc(1.0), centre);
-		// A depth below 0 lies beyond infinity: infinite projections with a slightly moved far plane.
-		m_far_device = at1 < 0.0 || (at0 >= 0.0 && at1 > at0) ? 1.0 : 0.0;
-		m_half_step = halfStepOf(file.image, channel);
-	}
-}
-
-float DepthReader::depthOf(std::size_t pixel) const
-{
-	const auto depth = static_cast<float>(alongView(pixel));
-	if (!(depth > 0.0F)) // a distance that becomes 0 along this line
-	{
-		m_file.refusePixel(m_file.channelName(m_channel), pixel, shortText(static_cast<double>(m_file.image.at(pixel, m_channel))),
-						   "a depth along the view direction that 32 bits hold, above 0");
-	}
-	return depth;
-}
-
-double DepthReader::alongView(std::size_t pixel) const
-{
-	if (m_import.depth == DepthKind::device)
-	{
-		return fromDevice(pixel);
-	}
-	const double metres = metresOf(m_file, m_channel, pixel, m_import.sky_depth_m);
-	return m_import.depth == DepthKind::distance ? metres / glm::length(lineAt(pixel).along) : metres;
-}
-
-bool DepthReader::hasErrors() const
-{
-	return m_error_channel >= 0 || m_import.depth == DepthKind::device || m_rounding > kUnitRoundoff;
-}
-
-float DepthReader::errorOf(std::size_t pixel, float depth_m) const
-{
-	if (m_error_channel >= 0)
-	{
-		const float error_m = m_file.image.at(pixel, m_error_channel);
-		if (!(error_m >= 0.0F && std::isfinite(error_m)))
-		{
-			m_file.refusePixel("channel depth_error", pixel, shortText(static_cast<double>(error_m)),
-							   "metres by which the depth may be off, from 0");
-		}
-		return error_m;
-	}
-	const auto depth = static_cast<double>(depth_m);
-	if (m_import.depth != DepthKind::device)
-	{
-		return static_cast<float>(depth * m_rounding);
-	}
-	// Rounding of the file, of the buffer, and of the interpolation in 32 bits.
-	const auto value = static_cast<double>(m_file.image.at(pixel, m_channel));
-	const double error = value * (m_rounding + kUnitRoundoff) + m_half_step;
-	const double nearer = m_projector.depthOfDevice(ndc(m_far_device > 0.5 ? value - error : value + error), lineAt(pixel));
-	const double too_great = nearer > 0.0 && nearer < depth ? depth - nearer : 0.0;
-	return static_cast<float>(too_great + depth * kUnitRoundoff); // `depth_m` is rounded too
-}
-
-double DepthReader::ndc(double device) const
-{
-	return m_import.clip == ClipRange::zero_to_one ? device : 2.0 * device - 1.0;
-}
-
-ViewLine DepthReader::lineAt(std::size_t pixel) const
-{
-	const auto width = static_cast<std::size_t>(m_file.image.width_px);
-	return m_projector.lineOf({static_cast<double>(pixel % width) + 0.5, static_cast<double>(pixel / width) + 0.5});
-}
-
-double DepthReader::fromDevice(std::size_t pixel) const
-{
-	const auto value = static_cast<double>(m_file.image.at(pixel, m_channel));
-	if (!(value >= 0.0 && value <= 1.0))
-	{
-		m_file.refusePixel(m_file.channelName(m_channel), pixel, shortText(value), "device depth from 0 to 1");
-	}
-	if (value == m_far_device)
-	{
-		return kInfinity;
-	}
-	const double depth = m_projector.depthOfDevice(ndc(value), lineAt(pixel));
-	if (!(depth > 0.0))
-	{
-		m_file.refusePixel(m_file.channelName(m_channel), pixel,
-						   shortText(value) + ", which is behind the camera of this projection",
-						   "device depth of the projection and the clip range given (clip)");
-	}
-	return depth >= m_import.sky_depth_m ? kInfinity : depth;
 }
 
 } // namespace nook

@@ -2,6 +2,7 @@
 // Gives the meshes of a glTF file baked values: what each place of a mesh has in common, and where the target wants it.
 #include "scene/gltf_bake.h"
 
+#include "core/lists.h"
 #include "scene/load_parts.h"
 
 #include <algorithm>
@@ -48,11 +49,8 @@ bool isSamePlacement(const GltfPlace& a, const GltfPlace& b)
 // Takes values of other vertices, unless a vertex has different ones.
 bool merge(std::vector<float>& numbers, const std::vector<float>& other)
 {
-	const auto fits = [](float a, float b)
-	{
-		return std::isnan(a) || std::isnan(b) || a == b;
-	};
-	const bool all_fit = std::equal(numbers.begin(), numbers.end(), other.begin(), fits);
+	const bool all_fit = std::equal(numbers.begin(), numbers.end(), other.begin(),
+									[](float a, float b) { return std::isnan(a) || std::isnan(b) || a == b; });
 	for (std::size_t i = 0; all_fit && i < numbers.size(); ++i)
 	{
 		numbers[i] = std::isnan(numbers[i]) ? other[i] : numbers[i];
@@ -64,8 +62,8 @@ class Baker
 {
 public:
 	Baker(GltfEditor& editor, const GltfBake& bake)
-		: m_editor(editor), m_bake(bake), m_textures(editor, bake),
-		  m_in_color(bake.target == BakeTarget::color || bake.target == BakeTarget::color_alpha), m_colors(bake.color || m_in_color)
+		: m_editor(editor), m_bake(bake), m_in_color(bake.target == BakeTarget::color || bake.target == BakeTarget::color_alpha),
+		  m_colors(bake.color || m_in_color)
 	{
 		const float unset = !m_bake.visibility.empty() && m_bake.kind == BakedKind::visibility ? 1.0F : 0.0F;
 		m_attribute = m_bake.target == BakeTarget::visibility ? std::string(kBakedNames[static_cast<std::size_t>(m_bake.kind)])
@@ -96,7 +94,7 @@ public:
 		{
 			for (const auto& [number, at] : unit.primitives)
 			{
-				checkTarget(primitiveOf(unit.mesh, number)["attributes"]);
+				checkTarget(m_editor.primitiveOf(unit.mesh, number)["attributes"]);
 			}
 		}
 		const bool own_vertices = !m_bake.charts.empty() || m_bake.split.how != nullptr;
@@ -108,14 +106,14 @@ public:
 				m_editor.fail(where, "instances by EXT_mesh_gpu_instancing",
 							  "nodes with a mesh each, since instances share their vertices", ExitCode::unsupported);
 			}
-			const Document& node = items("nodes")[place.node];
+			const Document& node = m_editor.items("nodes")[place.node];
 			if (m_bake.instances == BakeInstances::attribute && m_placements[numberIn(node, "mesh")] > 1 && !place.instance &&
 				!node.value("extras", Document::object()).is_object())
 			{
 				m_editor.fail(where + ".extras", "no object", "one, or nothing", ExitCode::unsupported);
 			}
 		}
-		m_textures.check(units);
+		checkTextures(m_editor, m_bake, units);
 	}
 
 	void add(std::span<const GltfPlace> places, GltfBaked& made)
@@ -134,7 +132,7 @@ public:
 			{
 				if (m_width > 0)
 				{
-					unit.groups[primitive] = groupOf(primitiveOf(unit.mesh, primitive), meanOf(at));
+					unit.groups[primitive] = groupOf(m_editor.primitiveOf(unit.mesh, primitive), meanOf(at));
 				}
 			}
 		}
@@ -156,27 +154,17 @@ public:
 		}
 		if (!m_bake.png.empty() || !m_bake.charts.empty())
 		{
-			made.copies += m_textures.add(places, units);
+			made.copies += addTextures(m_editor, m_bake, places, units, m_set_of_material);
 		}
 		made.bytes_added = m_editor.bytesAdded();
 		made.kept_alpha = m_kept_alpha.size();
 	}
 
 private:
-	Document& items(const char* name)
-	{
-		return m_editor.items(name);
-	}
-
-	Document& primitiveOf(std::size_t mesh, std::size_t primitive)
-	{
-		return items("meshes")[mesh]["primitives"][primitive];
-	}
-
 	Document materialOf(const Document& primitive)
 	{
 		const std::size_t index = numberIn(primitive, "material");
-		return index == kNoNumber ? Document::object() : items("materials")[index];
+		return index == kNoNumber ? Document::object() : m_editor.items("materials")[index];
 	}
 
 	// Is the alpha of its colours coverage, which --to color-alpha leaves alone?
@@ -192,10 +180,10 @@ private:
 		const GltfPlace* last = nullptr;
 		for (const GltfPlace& place : places)
 		{
-			const std::size_t mesh = items("nodes")[place.node]["mesh"].get<std::size_t>();
-			const Document& primitives = items("meshes")[mesh]["primitives"];
+			const std::size_t mesh = m_editor.items("nodes")[place.node]["mesh"].get<std::size_t>();
+			const Document& primitives = m_editor.items("meshes")[mesh]["primitives"];
 			if (place.primitive >= primitives.size() ||
-				numberIn(items("accessors")[numberIn(primitives[place.primitive]["attributes"], "POSITION")], "count") !=
+				numberIn(m_editor.items("accessors")[numberIn(primitives[place.primitive]["attributes"], "POSITION")], "count") !=
 					place.count)
 			{
 				m_editor.fail("asset.extras.nook", "a bake that split vertices", "the file before it");
@@ -279,7 +267,7 @@ private:
 			m_editor.fail(m_attribute, set > kMostSet ? "it in use, as all sets are" : "it in use",
 						  set > kMostSet ? "another target" : "a set that is free, as --to texcoord:" + std::to_string(set));
 		}
-		const Document& accessor = items("accessors")[found];
+		const Document& accessor = m_editor.items("accessors")[found];
 		if (m_bake.target != BakeTarget::texcoord && (accessor["type"] != "SCALAR" || accessor["componentType"] != 5126U))
 		{
 			m_editor.fail(m_attribute,
@@ -339,8 +327,8 @@ private:
 		if (group.color != kNoNumber)
 		{
 			base.emplace(m_editor.file, group.color);
-			component = numberIn(items("accessors")[group.color], "componentType");
-			given = items("accessors")[group.color]["type"] == "VEC3" ? 3 : 4;
+			component = numberIn(m_editor.items("accessors")[group.color], "componentType");
+			given = m_editor.items("accessors")[group.color]["type"] == "VEC3" ? 3 : 4;
 		}
 		const std::size_t channels = given == 3 && !alpha ? 3 : 4;
 		const std::size_t count = group.numbers.size() / m_width;
@@ -358,7 +346,7 @@ private:
 		const std::size_t made = m_editor.addAccessor(channels == 3 ? "VEC3" : "VEC4", component, count, bytes);
 		if (component != 5126)
 		{
-			items("accessors")[made]["normalized"] = true;
+			m_editor.items("accessors")[made]["normalized"] = true;
 		}
 		return made;
 	}
@@ -369,7 +357,7 @@ private:
 		std::map<std::size_t, Document> originals;
 		for (const MeshUnit& unit : units)
 		{
-			originals.try_emplace(unit.mesh, items("meshes")[unit.mesh]);
+			originals.try_emplace(unit.mesh, m_editor.items("meshes")[unit.mesh]);
 		}
 		std::map<std::pair<std::size_t, std::map<std::size_t, std::size_t>>, std::size_t> known;
 		std::set<std::size_t> used = m_bake.others_stay ? meshesOfOthers(m_editor, units) : std::set<std::size_t>();
@@ -378,20 +366,20 @@ private:
 			const auto [at, is_new] = known.try_emplace({unit.mesh, unit.groups}, unit.mesh);
 			if (is_new && !used.insert(unit.mesh).second)
 			{
-				at->second = items("meshes").size();
-				items("meshes").push_back(originals[unit.mesh]);
+				at->second = m_editor.items("meshes").size();
+				m_editor.items("meshes").push_back(originals[unit.mesh]);
 				made.copies += 1;
 			}
 			for (const auto& [primitive, group] : unit.groups)
 			{
 				if (is_new)
 				{
-					setAttributes(primitiveOf(at->second, primitive), m_groups[group]);
+					setAttributes(m_editor.primitiveOf(at->second, primitive), m_groups[group]);
 				}
 			}
 			for (const std::size_t node : unit.nodes)
 			{
-				items("nodes")[node]["mesh"] = at->second;
+				m_editor.items("nodes")[node]["mesh"] = at->second;
 			}
 		}
 	}
@@ -410,7 +398,7 @@ private:
 			{
 				const int set = firstFreeSet(attributes);
 				attributes[setName(set)] = accessor;
-				m_textures.set_of_material[numberIn(primitive, "material")] = set;
+				m_set_of_material[numberIn(primitive, "material")] = set;
 				continue;
 			}
 			// Sets have no gaps: free ones below get the same accessor.
@@ -433,7 +421,7 @@ private:
 			for (const auto& [primitive, places] : unit.primitives)
 			{
 				const ValueGroup& group = m_groups[unit.groups.at(primitive)];
-				const bool none = keepsAlpha(primitiveOf(unit.mesh, primitive));
+				const bool none = keepsAlpha(m_editor.primitiveOf(unit.mesh, primitive));
 				for (const GltfPlace* const place : places)
 				{
 					for (const auto& [vertex, of_level] : place->vertices)
@@ -453,18 +441,13 @@ private:
 	void addFactors(std::span<const GltfPlace> places, GltfBaked& made)
 	{
 		std::map<std::size_t, std::vector<float>> of_node; // with instances
-		for (std::size_t first = 0; first < places.size();)
+		const auto addFactor = [&](std::span<const GltfPlace> placement)
 		{
-			std::size_t end = first + 1;
-			while (end < places.size() && isSamePlacement(places[first], places[end]))
-			{
-				end += 1;
-			}
-			const GltfPlace& place = places[first];
-			Document& node = items("nodes")[place.node];
+			const GltfPlace& place = placement.front();
+			Document& node = m_editor.items("nodes")[place.node];
 			if (m_placements[numberIn(node, "mesh")] > 1)
 			{
-				const float factor = factorOf(places.subspan(first, end - first), made);
+				const float factor = factorOf(placement, made);
 				if (place.instance)
 				{
 					of_node[place.node].resize(*place.instance + 1, 1.0F);
@@ -475,12 +458,12 @@ private:
 					node["extras"]["nook_visibility"] = factor;
 				}
 			}
-			first = end;
-		}
+		};
+		eachRun(places, isSamePlacement, addFactor);
 		for (auto& [node, factors] : of_node)
 		{
-			Document& attributes = items("nodes")[node]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
-			factors.resize(numberIn(items("accessors")[attributes.begin()->get<std::size_t>()], "count"), 1.0F);
+			Document& attributes = m_editor.items("nodes")[node]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+			factors.resize(numberIn(m_editor.items("accessors")[attributes.begin()->get<std::size_t>()], "count"), 1.0F);
 			const std::string bytes(reinterpret_cast<const char*>(factors.data()), factors.size() * sizeof(float));
 			attributes["_VISIBILITY"] = m_editor.addAccessor("SCALAR", 5126, factors.size(), bytes);
 		}
@@ -517,7 +500,6 @@ private:
 
 	GltfEditor& m_editor;
 	const GltfBake& m_bake;
-	TextureBaker m_textures;
 	bool m_in_color;
 	bool m_colors;
 	std::vector<Channel> m_channels;
@@ -527,6 +509,7 @@ private:
 	std::vector<ValueGroup> m_groups;
 	std::map<std::tuple<std::size_t, std::size_t, bool>, std::vector<std::size_t>> m_groups_of; // by positions, colours, sides
 	std::set<std::size_t> m_kept_alpha;                                                         // materials
+	std::map<std::size_t, int> m_set_of_material; // texture coordinates that were added
 };
 
 } // namespace

@@ -2,16 +2,12 @@
 // Shared by the parts of bakeInto().
 #pragma once
 
-#include "core/image.h"
 #include "scene/gltf_edit.h"
 
 #include <map>
 #include <set>
 #include <span>
 #include <string>
-#include <string_view>
-#include <tuple>
-#include <utility>
 #include <vector>
 
 namespace nook
@@ -45,10 +41,30 @@ std::set<std::size_t> meshesOfOthers(GltfEditor& editor, const std::vector<MeshU
 class OwnMeshes
 {
 public:
-	explicit OwnMeshes(GltfEditor& editor);
+	explicit OwnMeshes(GltfEditor& editor) : m_editor(editor)
+	{
+		for (const GltfEditor::Document& node : editor.items("nodes"))
+		{
+			m_users[numberIn(node, "mesh")] += 1;
+		}
+	}
 
 	// A copy, unless it is the last node with that mesh.
-	std::size_t meshOf(std::size_t node);
+	std::size_t meshOf(std::size_t node)
+	{
+		GltfEditor::Document& meshes = m_editor.items("meshes");
+		const std::size_t mesh = numberIn(m_editor.items("nodes")[node], "mesh");
+		if (!m_done.insert(node).second || m_users[mesh] == 1)
+		{
+			return mesh;
+		}
+		m_users[mesh] -= 1;
+		copies += 1;
+		m_editor.items("nodes")[node]["mesh"] = meshes.size();
+		const GltfEditor::Document copy = meshes[mesh];
+		meshes.push_back(copy);
+		return meshes.size() - 1;
+	}
 
 	std::size_t copies = 0;
 
@@ -58,51 +74,12 @@ private:
 	std::set<std::size_t> m_done;               // nodes
 };
 
-// Gives materials a texture of the bake.
-class TextureBaker
-{
-public:
-	TextureBaker(GltfEditor& editor, const GltfBake& bake) : m_editor(editor), m_bake(bake) {}
+// Gives the materials of units a texture of the bake, and primitives coordinates if it has charts. `set_of_material`: texture
+// coordinates that were added. Returns the number of copies of meshes.
+std::size_t addTextures(GltfEditor& editor, const GltfBake& bake, std::span<const GltfPlace> places,
+						const std::vector<MeshUnit>& units, const std::map<std::size_t, int>& set_of_material);
 
-	// Throws for what add() would.
-	void check(const std::vector<MeshUnit>& units);
-
-	// Returns the copies of meshes. With charts, primitives get coordinates.
-	std::size_t add(std::span<const GltfPlace> places, const std::vector<MeshUnit>& units);
-
-	std::map<std::size_t, int> set_of_material; // texture coordinates that were added
-
-private:
-	using Document = GltfEditor::Document;
-
-	Document& items(const char* name)
-	{
-		return m_editor.items(name);
-	}
-	Document& primitiveOf(std::size_t mesh, std::size_t primitive)
-	{
-		return items("meshes")[mesh]["primitives"][primitive];
-	}
-
-	std::size_t addImage(const std::string& name, std::string_view png);
-	std::size_t textureOf(std::string_view png);
-	std::size_t roughOf(std::size_t material);
-	Image pictureOf(std::size_t texture);
-	std::size_t withRed(std::size_t texture, std::string_view png);
-	void setTexture(std::size_t material, std::string_view png, std::size_t set);
-	std::size_t textured(std::size_t before, std::size_t page, std::string_view png, std::size_t set);
-	std::size_t freeSet(const std::vector<MeshUnit>& units);
-	void keepOthers(const std::vector<MeshUnit>& units);
-	void addCharts(const MeshUnit& unit, std::size_t number, std::size_t mesh, const GltfCharts& charts, std::size_t set);
-
-	GltfEditor& m_editor;
-	const GltfBake& m_bake;
-	std::size_t m_sampler = kNoNumber;                                      // of the textures
-	std::map<std::pair<const char*, std::size_t>, std::size_t> m_textures;  // by picture and metallic-roughness texture
-	std::map<std::pair<std::size_t, std::size_t>, std::size_t> m_materials; // by the one before and the page
-	std::set<std::size_t> m_taken;                                          // materials that got a page, or stay as they are
-	std::map<std::pair<std::size_t, std::size_t>, Document> m_split;        // primitives with added vertices
-	std::map<std::tuple<std::size_t, std::size_t, std::vector<uint32_t>>, std::size_t> m_indices; // accessors
-};
+// Throws for what addTextures() would.
+void checkTextures(GltfEditor& editor, const GltfBake& bake, const std::vector<MeshUnit>& units);
 
 } // namespace nook

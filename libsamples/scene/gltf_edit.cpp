@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "core/words.h"
 
@@ -286,12 +287,7 @@ std::size_t GltfEditor::addAccessor(const std::string& type, uint64_t component,
 
 std::size_t GltfEditor::bytesAdded() const
 {
-	std::size_t bytes = m_settled_bytes;
-	for (const std::string& view : m_added)
-	{
-		bytes += view.size();
-	}
-	return bytes;
+	return m_settled_bytes + sumOver(m_added, [](const std::string& view) { return view.size(); });
 }
 
 // Appends the added views to the binary chunk if that is the first buffer, else to a buffer of their own.

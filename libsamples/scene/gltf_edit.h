@@ -40,6 +40,10 @@ public:
 
 	// A list of the document, made if it is missing, which may move others.
 	Document& items(const char* name);
+	Document& primitiveOf(std::size_t mesh, std::size_t primitive)
+	{
+		return items("meshes")[mesh]["primitives"][primitive];
+	}
 
 	// Return the index. Accessors go to a view of elements of their size, and indices to one of theirs.
 	std::size_t addView(Document view, std::string_view bytes);

@@ -4,6 +4,7 @@
 
 #include "core/file.h"
 #include "core/isolate.h"
+#include "core/lists.h"
 #include "core/words.h"
 #include "scene/mesh_codec.h"
 
@@ -224,12 +225,8 @@ private:
 		const std::string where = m_file.path + ": " + primitive.element;
 		if (!NOOK_HAS_DRACO)
 		{
-			refuseInput(where,
-						"KHR_draco_mesh_compression, which this build does not support "
-						"(Debian's package libdraco-dev)",
-						"what `gltf-transform copy IN.glb "
-						"OUT.glb` makes of it",
-						ExitCode::unsupported);
+			refuseInput(where, "KHR_draco_mesh_compression, which this build does not support (Debian's package libdraco-dev)",
+						"what `gltf-transform copy IN.glb OUT.glb` makes of it", ExitCode::unsupported);
 		}
 		const std::size_t view = extension->indexNeeded("bufferView", m_file.root().count("bufferViews"));
 		DracoMesh made;
@@ -275,11 +272,7 @@ private:
 
 	void decode()
 	{
-		std::size_t bytes = 0;
-		for (const DracoMesh& mesh : m_meshes)
-		{
-			bytes += mesh.coded.size();
-		}
+		const std::size_t bytes = sumOver(m_meshes, [](const DracoMesh& mesh) { return mesh.coded.size(); });
 		const auto ask = [&](ValueWriter& to)
 		{
 			to.value(uint64_t{m_meshes.size()});

@@ -133,105 +133,7 @@ void parseText(GltfFile& file)
 	}
 }
 
-} // namespace
-
-GltfFile openGlb(std::string bytes, const std::string& path)
-{
-	GltfFile file;
-	file.path = path;
-	file.is_binary = true;
-	file.text = takeChunks(std::move(bytes), file);
-	parseText(file);
-	return file;
-}
-
-GltfFile openGltf(const std::string& path)
-{
-	std::string text = readFile(path);
-	if (endingOf(path) == ".glb")
-	{
-		return openGlb(std::move(text), path);
-	}
-	if (text.starts_with("glTF"))
-	{
-		refuseFile(path, "header: found a binary glTF, expected the ending .glb of one, or text");
-	}
-	GltfFile file;
-	file.path = path;
-	file.text = std::move(text);
-	parseText(file);
-	return file;
-}
-
-std::optional<std::string> dataOf(const std::string& uri, const JsonValue& item)
-{
-	if (!uri.starts_with("data:"))
-	{
-		return std::nullopt;
-	}
-	const std::size_t comma = uri.find(',');
-	if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
-	{
-		item.fail("uri", "data that is not base64", "\"data:...;base64,...\"");
-	}
-	std::string text = uri.substr(comma + 1);
-	text.append((4 - text.size() % 4) % 4, '='); // some writers omit the padding
-	const std::optional<std::vector<uint8_t>> bytes = bytesOfBase64(text);
-	if (!bytes)
-	{
-		const std::size_t odd = std::min(uri.find_first_not_of(kBase64, comma + 1), uri.size());
-		item.fail("uri", "character " + std::to_string(odd) + " that is not base64", "letters, digits, + and /");
-	}
-	return std::string(bytes->begin(), bytes->end());
-}
-
-std::string_view bufferBytes(GltfFile& file, std::size_t buffer, std::size_t offset, std::size_t length)
-{
-	const std::size_t count = file.root().count("buffers");
-	const std::size_t first_decoded = count - file.decoded.size();
-	if (buffer >= first_decoded)
-	{
-		return std::string_view(file.decoded[buffer - first_decoded]).substr(offset, length);
-	}
-	const JsonValue holder = file.root().item("buffers", buffer);
-	if (!holder.has("uri"))
-	{
-		return std::string_view(file.chunk).substr(offset, length);
-	}
-	file.buffers.resize(first_decoded);
-	std::optional<std::string>& bytes = file.buffers[buffer];
-	if (!bytes)
-	{
-		const std::string uri = holder.text("uri");
-		bytes = dataOf(uri, holder);
-		bytes = bytes ? std::move(bytes) : readFile(besideLevel(file.path, unescaped(uri)));
-	}
-	if (bytes->size() < offset + length)
-	{
-		holder.fail("uri", std::to_string(bytes->size()) + " bytes", "what it had a moment ago");
-	}
-	return std::string_view(*bytes).substr(offset, length);
-}
-
-std::optional<JsonValue> extensionOf(const JsonValue& item, std::string_view name)
-{
-	const std::optional<JsonValue> extensions = item.object("extensions");
-	return extensions ? extensions->object(name) : std::nullopt;
-}
-
-std::string_view viewBytes(GltfFile& file, std::size_t view)
-{
-	const JsonValue item = file.root().item("bufferViews", view);
-	const auto index = static_cast<std::size_t>(item.wholeNeeded("buffer", UINT32_MAX));
-	const auto offset = static_cast<std::size_t>(item.whole("byteOffset", UINT32_MAX).value_or(0));
-	const auto length = static_cast<std::size_t>(item.wholeNeeded("byteLength", UINT32_MAX));
-	return bufferBytes(file, index, offset, length);
-}
-
 // Validates the structure of a glTF file for readers that trust it: khronos.org/registry/glTF/specs/2.0, sections 3.5 to 3.7 and 5.
-
-namespace
-{
 
 constexpr uint64_t kMaxBytes = uint64_t{1} << 32U;
 constexpr uint64_t kMaxVertices = 3 * uint64_t{kMaxTriangles};
@@ -242,11 +144,6 @@ constexpr std::array<std::string_view, 11> kKnownExtensions{
 	"EXT_meshopt_compression", "KHR_draco_mesh_compression", "EXT_texture_webp",    "KHR_texture_basisu",
 	"KHR_mesh_quantization",   "KHR_texture_transform",      "KHR_lights_punctual", "KHR_animation_pointer",
 	"KHR_xmp_json_ld",         "EXT_mesh_gpu_instancing",    "KHR_node_visibility"};
-
-[[noreturn]] void unsupported(const std::string& path, const std::string& what)
-{
-	throw Error(ExitCode::unsupported, path + ": " + what);
-}
 
 struct BufferView
 {
@@ -301,10 +198,9 @@ private:
 			if (!name.starts_with("KHR_materials_") &&
 				std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) == kKnownExtensions.end())
 			{
-				unsupported(
-					m_file.path,
-					"extensionsRequired: found \"" + name +
-						"\", expected a file that can be read without it, as `gltf-transform copy IN.glb OUT.glb` may make one");
+				refuseInput(m_file.path + ": extensionsRequired", "\"" + name + "\"",
+							"a file that can be read without it, as `gltf-transform copy IN.glb OUT.glb` may make one",
+							ExitCode::unsupported);
 			}
 		}
 	}
@@ -621,6 +517,99 @@ private:
 };
 
 } // namespace
+
+GltfFile openGlb(std::string bytes, const std::string& path)
+{
+	GltfFile file;
+	file.path = path;
+	file.is_binary = true;
+	file.text = takeChunks(std::move(bytes), file);
+	parseText(file);
+	return file;
+}
+
+GltfFile openGltf(const std::string& path)
+{
+	std::string text = readFile(path);
+	if (endingOf(path) == ".glb")
+	{
+		return openGlb(std::move(text), path);
+	}
+	if (text.starts_with("glTF"))
+	{
+		refuseFile(path, "header: found a binary glTF, expected the ending .glb of one, or text");
+	}
+	GltfFile file;
+	file.path = path;
+	file.text = std::move(text);
+	parseText(file);
+	return file;
+}
+
+std::optional<std::string> dataOf(const std::string& uri, const JsonValue& item)
+{
+	if (!uri.starts_with("data:"))
+	{
+		return std::nullopt;
+	}
+	const std::size_t comma = uri.find(',');
+	if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
+	{
+		item.fail("uri", "data that is not base64", "\"data:...;base64,...\"");
+	}
+	std::string text = uri.substr(comma + 1);
+	text.append((4 - text.size() % 4) % 4, '='); // some writers omit the padding
+	const std::optional<std::vector<uint8_t>> bytes = bytesOfBase64(text);
+	if (!bytes)
+	{
+		const std::size_t odd = std::min(uri.find_first_not_of(kBase64, comma + 1), uri.size());
+		item.fail("uri", "character " + std::to_string(odd) + " that is not base64", "letters, digits, + and /");
+	}
+	return std::string(bytes->begin(), bytes->end());
+}
+
+std::string_view bufferBytes(GltfFile& file, std::size_t buffer, std::size_t offset, std::size_t length)
+{
+	const std::size_t count = file.root().count("buffers");
+	const std::size_t first_decoded = count - file.decoded.size();
+	if (buffer >= first_decoded)
+	{
+		return std::string_view(file.decoded[buffer - first_decoded]).substr(offset, length);
+	}
+	const JsonValue holder = file.root().item("buffers", buffer);
+	if (!holder.has("uri"))
+	{
+		return std::string_view(file.chunk).substr(offset, length);
+	}
+	file.buffers.resize(first_decoded);
+	std::optional<std::string>& bytes = file.buffers[buffer];
+	if (!bytes)
+	{
+		const std::string uri = holder.text("uri");
+		bytes = dataOf(uri, holder);
+		bytes = bytes ? std::move(bytes) : readFile(besideLevel(file.path, unescaped(uri)));
+	}
+	if (bytes->size() < offset + length)
+	{
+		holder.fail("uri", std::to_string(bytes->size()) + " bytes", "what it had a moment ago");
+	}
+	return std::string_view(*bytes).substr(offset, length);
+}
+
+std::optional<JsonValue> extensionOf(const JsonValue& item, std::string_view name)
+{
+	const std::optional<JsonValue> extensions = item.object("extensions");
+	return extensions ? extensions->object(name) : std::nullopt;
+}
+
+std::string_view viewBytes(GltfFile& file, std::size_t view)
+{
+	const JsonValue item = file.root().item("bufferViews", view);
+	const auto index = static_cast<std::size_t>(item.wholeNeeded("buffer", UINT32_MAX));
+	const auto offset = static_cast<std::size_t>(item.whole("byteOffset", UINT32_MAX).value_or(0));
+	const auto length = static_cast<std::size_t>(item.wholeNeeded("byteLength", UINT32_MAX));
+	return bufferBytes(file, index, offset, length);
+}
 
 void checkGltf(GltfFile& file)
 {

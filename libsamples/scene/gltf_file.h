@@ -80,13 +80,11 @@ bool isFallbackBuffer(const JsonValue& buffer);
 // a build without it.
 bool expandGltf(GltfFile& file);
 
-// The placements of a node's mesh by EXT_mesh_gpu_instancing, in a checked glTF file.
-
 // Limit per file: each instance has a name, even with few triangles.
 inline constexpr std::size_t kMaxInstances = std::size_t{1} << 22U;
 
-// The instances' transforms, relative to the node's own; none if the node has a single mesh. Throws Error (invalid_input) if
-// attributes have types or counts that the extension does not allow, hold no numbers, or exceed `most`.
+// The instances' transforms by EXT_mesh_gpu_instancing, relative to the node's own; none if the node has a single mesh. Throws
+// Error (invalid_input) if attributes have types or counts that the extension does not allow, hold no numbers, or exceed `most`.
 std::optional<std::vector<glm::dmat4>> instancesOf(GltfFile& file, const JsonValue& node, std::size_t most);
 
 // Translation × rotation × scale; the rotation is normalised to a unit quaternion (x, y, z, w), or ignored if it is zero.
@@ -105,7 +103,6 @@ inline void padTo4(std::string& bytes)
 }
 
 // The numbers of an accessor of a checked glTF file: any component type, normalised or not, strided, sparse, or zeros.
-
 class GltfValues
 {
 public:

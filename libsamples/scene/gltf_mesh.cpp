@@ -386,16 +386,13 @@ private:
 			m_tallies["points-or-lines"].add("mesh '" + made.name + "'", primitive.elementCount());
 			if (m_file.second_set == kPlacesSet && primitive.triangleCount() > 0)
 			{
-				m_source.places.push_back({node.index,
-										   node.instance,
-										   static_cast<std::size_t>(&primitive - m_meshes[*mesh].data()),
-										   primitive.positions->count(),
-										   made.first_triangle,
-										   {},
-										   *mesh,
-										   false,
-										   {},
-										   {}});
+				GltfPlace& at = m_source.places.emplace_back();
+				at.node = node.index;
+				at.instance = node.instance;
+				at.primitive = static_cast<std::size_t>(&primitive - m_meshes[*mesh].data());
+				at.count = primitive.positions->count();
+				at.mesh = *mesh;
+				at.triangle = made.first_triangle;
 			}
 			triangles(primitive, m_world_from_file * node.world, pose);
 			made.triangle_count = m_level.triangles.size() - made.first_triangle;

@@ -2,7 +2,6 @@
 // Reads materials, masks, nodes and cameras from a glTF file's JSON.
 #include "scene/gltf_file.h"
 
-#include "core/error.h"
 #include "core/math.h"
 
 #include <glm/geometric.hpp>
@@ -184,7 +183,12 @@ private:
 		const std::optional<std::size_t> image = imageOf(m_textures[index]);
 		if (made.material.alpha_mode == AlphaMode::opaque)
 		{
-			noteMissing(image);
+			const bool named = image && m_images[*image].has("uri");
+			const std::string uri = named ? m_images[*image].text("uri") : "";
+			if (named && !uri.starts_with("data:"))
+			{
+				noteMissingFile(m_source, besideLevel(m_file.path, unescaped(uri)));
+			}
 			return;
 		}
 		if (!image)
@@ -211,14 +215,6 @@ private:
 			}
 		}
 		return texture.index("source", m_images.size());
-	}
-
-	void noteMissing(std::optional<std::size_t> image)
-	{
-		if (image && m_images[*image].has("uri") && !m_images[*image].text("uri").starts_with("data:"))
-		{
-			noteMissingFile(m_source, besideLevel(m_file.path, unescaped(m_images[*image].text("uri"))));
-		}
 	}
 
 	int maskOf(const JsonValue& texture, std::size_t image)

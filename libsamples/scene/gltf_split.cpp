@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Adds vertices to the primitives of a glTF file, and splits their triangles.
+#include "core/lists.h"
 #include "scene/gltf_bake.h"
 
 #include <algorithm>
@@ -166,11 +167,7 @@ public:
 		}
 		std::stable_sort(sorted.begin(), sorted.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
 		sorted.resize(4 * m_joints.size());
-		double kept = 0.0;
-		for (const auto& [weight, joint] : sorted)
-		{
-			kept += weight;
-		}
+		const double kept = sumOver(sorted, [](const auto& item) { return item.first; });
 		double rest = sum; // integers keep the sum: the first gets what rounding leaves
 		for (auto& [weight, joint] : sorted)
 		{
@@ -276,7 +273,7 @@ public:
 private:
 	Document& primitiveOf(const GltfPlace& place)
 	{
-		return m_editor.items("meshes")[numberIn(m_editor.items("nodes")[place.node], "mesh")]["primitives"][place.primitive];
+		return m_editor.primitiveOf(numberIn(m_editor.items("nodes")[place.node], "mesh"), place.primitive);
 	}
 
 	SplitPlace splitOf(std::size_t number)

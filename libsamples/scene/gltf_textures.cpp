@@ -1,284 +1,296 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gives the materials of a glTF file a baked texture, and primitives the coordinates for it.
 #include "core/file.h"
+#include "core/image.h"
 #include "scene/gltf_bake.h"
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 namespace nook
 {
 namespace
 {
 
+using Document = GltfEditor::Document;
+
 constexpr const char* kRough = "metallicRoughnessTexture";
+
+// Gives materials a texture of the bake.
+class TextureBaker
+{
+public:
+	TextureBaker(GltfEditor& editor, const GltfBake& bake) : m_editor(editor), m_bake(bake) {}
+
+	void check(const std::vector<MeshUnit>& units)
+	{
+		for (const MeshUnit& unit : units)
+		{
+			for (const auto& [number, at] : unit.primitives)
+			{
+				if (const std::size_t rough = roughOf(numberIn(m_editor.primitiveOf(unit.mesh, number), "material"));
+					rough != kNoNumber)
+				{
+					pictureOf(rough);
+				}
+			}
+		}
+		if (!m_bake.charts.empty())
+		{
+			freeSet(units);
+		}
+	}
+
+	std::size_t add(std::span<const GltfPlace> places, const std::vector<MeshUnit>& units,
+					const std::map<std::size_t, int>& set_of_material)
+	{
+		const bool has_charts = !m_bake.charts.empty();
+		if (has_charts || m_bake.others_stay)
+		{
+			keepOthers(units);
+		}
+		const std::size_t free = has_charts ? freeSet(units) : 0;
+		OwnMeshes own(m_editor);
+		for (const MeshUnit& unit : units)
+		{
+			const std::size_t node = unit.nodes.front();
+			const std::size_t mesh = has_charts ? own.meshOf(node) : numberIn(m_editor.items("nodes")[node], "mesh");
+			for (const auto& [number, at] : unit.primitives)
+			{
+				if (has_charts)
+				{
+					addCharts(unit, number, mesh, m_bake.charts[static_cast<std::size_t>(at.front() - places.data())], free);
+					continue;
+				}
+				const std::size_t before = numberIn(m_editor.primitiveOf(mesh, number), "material");
+				const auto set = set_of_material.find(before);
+				const auto of_file = static_cast<std::size_t>(m_bake.uv_set.value_or(0));
+				m_editor.primitiveOf(mesh, number)["material"] =
+					textured(before, 0, m_bake.png, set != set_of_material.end() ? static_cast<std::size_t>(set->second) : of_file);
+			}
+		}
+		return own.copies;
+	}
+
+private:
+	std::size_t addImage(const std::string& name, std::string_view png)
+	{
+		const std::size_t view = m_editor.addView(Document::object(), png);
+		Document image{{"name", name}, {"mimeType", "image/png"}, {"bufferView", view}};
+		m_editor.items("images").push_back(std::move(image));
+		return m_editor.items("images").size() - 1;
+	}
+
+	// The index of a texture made of a PNG file.
+	std::size_t textureOf(std::string_view png)
+	{
+		const std::size_t image = addImage("visibility", png);
+		if (m_sampler == kNoNumber)
+		{
+			m_sampler = m_editor.items("samplers").size();
+			m_editor.items("samplers")
+				.push_back({{"magFilter", 9729U}, {"minFilter", 9987U}, {"wrapS", 33071U}, {"wrapT", 33071U}});
+		}
+		m_editor.items("textures").push_back({{"sampler", m_sampler}, {"source", image}});
+		return m_editor.items("textures").size() - 1;
+	}
+
+	// The texture that takes the values in its red channel, if any.
+	std::size_t roughOf(std::size_t material)
+	{
+		const Document item = material == kNoNumber || !m_bake.in_red ? Document::object() : m_editor.items("materials")[material];
+		const Document pbr = item.value("pbrMetallicRoughness", Document::object());
+		return pbr.contains(kRough) ? numberIn(pbr[kRough], "index") : kNoNumber;
+	}
+
+	// Its picture; throws unless that has 8 bits per channel.
+	Image pictureOf(std::size_t texture)
+	{
+		const std::size_t number = numberIn(m_editor.items("textures")[texture], "source");
+		const std::string where = "textures[" + std::to_string(texture) + "]";
+		if (number == kNoNumber)
+		{
+			m_editor.fail(where, "no image of the core format", "a PNG or JPEG for the red channel", ExitCode::unsupported);
+		}
+		const JsonValue item = m_editor.file.root().item("images", number);
+		const std::string uri = item.text("uri");
+		const std::string path = uri.empty() || uri.starts_with("data:") ? "" : besideLevel(m_editor.file.path, unescaped(uri));
+		checkInside(m_editor.file.path, "images[" + std::to_string(number) + "]", path, m_editor.file.settings);
+		const std::string bytes =
+			!path.empty() ? readFile(path)
+			: uri.empty() ? std::string(viewBytes(m_editor.file, numberIn(m_editor.items("images")[number], "bufferView")))
+						  : dataOf(uri, item).value_or("");
+		Image image = decodeImage(bytes, path.empty() ? "image.png" : path);
+		if (std::any_of(image.values.begin(), image.values.end(),
+						[](float value) { return std::fabs(255.0F * value - std::round(255.0F * value)) > 0.01F; }))
+		{
+			m_editor.fail(where, "more than 8 bits per channel", "8 bits, for the red channel", ExitCode::unsupported);
+		}
+		return image;
+	}
+
+	// A copy of a texture with another picture, scaled to its size, as its red channel.
+	std::size_t withRed(std::size_t texture, std::string_view png)
+	{
+		Document made = m_editor.items("textures")[texture];
+		std::vector<AlphaImage> red =
+			decodeAlphas({{"visibility.png", "", std::string(png), MaskChannel::red}}, m_editor.file.path);
+		const Mask values{"", red[0].width_px, red[0].height_px, Wrap::clamp, Wrap::clamp, std::move(red[0].alpha)};
+		made["source"] = addImage(textIn(m_editor.items("images")[numberIn(made, "source")], "name"),
+								  pngWithChannel(pictureOf(texture), 0, values));
+		m_editor.items("textures").push_back(made);
+		return m_editor.items("textures").size() - 1;
+	}
+
+	// Gives a material the texture, and keeps the strength of an earlier one.
+	void setTexture(std::size_t material, std::string_view png, std::size_t set)
+	{
+		const std::size_t rough = roughOf(material);
+		const auto [known, is_new] = m_textures.try_emplace({png.data(), rough}, 0);
+		if (is_new)
+		{
+			known->second = rough == kNoNumber ? textureOf(png) : withRed(rough, png);
+		}
+		Document& item = m_editor.items("materials")[material];
+		if (rough != kNoNumber)
+		{
+			item["pbrMetallicRoughness"][kRough]["index"] = known->second;
+		}
+		Document& to = item["occlusionTexture"];
+		Document use{{"index", known->second}, {"texCoord", set}};
+		if (to.contains("strength"))
+		{
+			use["strength"] = to["strength"];
+		}
+		to = std::move(use);
+	}
+
+	// The material of a primitive with a page of the texture: a copy if others keep it as it is, or it has another page.
+	std::size_t textured(std::size_t before, std::size_t page, std::string_view png, std::size_t set)
+	{
+		const auto [known, is_new] = m_materials.try_emplace({before, page}, before);
+		const std::size_t next = m_editor.items("materials").size();
+		if (is_new)
+		{
+			if (before == kNoNumber || !m_taken.insert(before).second)
+			{
+				known->second = next;
+				m_editor.items("materials")
+					.push_back(before == kNoNumber ? Document::object() : m_editor.items("materials")[before]);
+			}
+			setTexture(known->second, png, set);
+			m_materials.emplace(std::pair(known->second, page), known->second);
+		}
+		return known->second;
+	}
+
+	// The first set of coordinates that no primitive has.
+	std::size_t freeSet(const std::vector<MeshUnit>& units)
+	{
+		int set = 0;
+		for (const MeshUnit& unit : units)
+		{
+			for (const auto& [primitive, at] : unit.primitives)
+			{
+				set = std::max(set, firstFreeSet(m_editor.primitiveOf(unit.mesh, primitive)["attributes"]));
+			}
+		}
+		if (set > kMostSet)
+		{
+			m_editor.fail("meshes", "no free set of texture coordinates, with TEXCOORD_" + std::to_string(kMostSet) + " in use",
+						  "at most " + std::to_string(kMostSet) + " of them");
+		}
+		return static_cast<std::size_t>(set);
+	}
+
+	// Materials that other primitives have stay as they are.
+	void keepOthers(const std::vector<MeshUnit>& units)
+	{
+		const std::set<std::size_t> meshes = meshesOfOthers(m_editor, units);
+		std::set<std::pair<std::size_t, std::size_t>> textured;
+		for (const MeshUnit& unit : units)
+		{
+			for (const auto& [primitive, at] : unit.primitives)
+			{
+				textured.emplace(unit.mesh, primitive);
+			}
+		}
+		for (std::size_t mesh = 0; mesh < m_editor.items("meshes").size(); ++mesh)
+		{
+			for (std::size_t i = 0; i < m_editor.items("meshes")[mesh]["primitives"].size(); ++i)
+			{
+				if ((m_bake.others_stay && meshes.contains(mesh)) || !textured.contains({mesh, i}))
+				{
+					m_taken.insert(numberIn(m_editor.primitiveOf(mesh, i), "material"));
+				}
+			}
+		}
+	}
+
+	// A primitive of a node's own mesh: one for each page.
+	void addCharts(const MeshUnit& unit, std::size_t number, std::size_t mesh, const GltfCharts& charts, std::size_t set)
+	{
+		const auto [shared, is_new] = m_split.try_emplace({unit.mesh, number}, m_editor.primitiveOf(mesh, number));
+		if (is_new)
+		{
+			addVertices(m_editor, shared->second, charts.copied);
+		}
+		Document primitive = shared->second;
+		const std::size_t before = numberIn(primitive, "material");
+		std::string uvs;
+		std::for_each(charts.uvs.begin(), charts.uvs.end(), [&uvs](glm::vec2 uv) { appendRaw(uvs, uv); });
+		const std::size_t coordinates = m_editor.addAccessor("VEC2", 5126, charts.uvs.size(), uvs);
+		for (std::size_t i = 0; i <= set; ++i) // sets have no gaps
+		{
+			Document& to = primitive["attributes"][setName(static_cast<int>(i))];
+			to = to.is_null() ? Document(coordinates) : to;
+		}
+		primitive["mode"] = 4U;
+		std::size_t at = number; // further pages go behind the mesh's primitives
+		for (std::size_t page = 0; page < charts.pages.size(); ++page)
+		{
+			const std::vector<uint32_t>& indices = charts.pages[page];
+			if (indices.empty())
+			{
+				continue;
+			}
+			const auto [accessor, is_new_list] = m_indices.try_emplace({unit.mesh, number, indices}, 0);
+			if (is_new_list)
+			{
+				const std::string bytes(reinterpret_cast<const char*>(indices.data()), 4 * indices.size());
+				accessor->second = m_editor.addAccessor("SCALAR", 5125, indices.size(), bytes, true);
+			}
+			primitive["indices"] = accessor->second;
+			primitive["material"] = textured(before, page, m_bake.pages[page], set);
+			Document& all = m_editor.items("meshes")[mesh]["primitives"];
+			all[at] = primitive;
+			at = all.size();
+		}
+	}
+
+	GltfEditor& m_editor;
+	const GltfBake& m_bake;
+	std::size_t m_sampler = kNoNumber;                                      // of the textures
+	std::map<std::pair<const char*, std::size_t>, std::size_t> m_textures;  // by picture and metallic-roughness texture
+	std::map<std::pair<std::size_t, std::size_t>, std::size_t> m_materials; // by the one before and the page
+	std::set<std::size_t> m_taken;                                          // materials that got a page, or stay as they are
+	std::map<std::pair<std::size_t, std::size_t>, Document> m_split;        // primitives with added vertices
+	std::map<std::tuple<std::size_t, std::size_t, std::vector<uint32_t>>, std::size_t> m_indices; // accessors
+};
 
 } // namespace
 
-OwnMeshes::OwnMeshes(GltfEditor& editor) : m_editor(editor)
+void checkTextures(GltfEditor& editor, const GltfBake& bake, const std::vector<MeshUnit>& units)
 {
-	for (const GltfEditor::Document& node : editor.items("nodes"))
-	{
-		m_users[numberIn(node, "mesh")] += 1;
-	}
+	TextureBaker(editor, bake).check(units);
 }
 
-std::size_t OwnMeshes::meshOf(std::size_t node)
+std::size_t addTextures(GltfEditor& editor, const GltfBake& bake, std::span<const GltfPlace> places,
+						const std::vector<MeshUnit>& units, const std::map<std::size_t, int>& set_of_material)
 {
-	GltfEditor::Document& meshes = m_editor.items("meshes");
-	const std::size_t mesh = numberIn(m_editor.items("nodes")[node], "mesh");
-	if (!m_done.insert(node).second || m_users[mesh] == 1)
-	{
-		return mesh;
-	}
-	m_users[mesh] -= 1;
-	copies += 1;
-	m_editor.items("nodes")[node]["mesh"] = meshes.size();
-	const GltfEditor::Document copy = meshes[mesh];
-	meshes.push_back(copy);
-	return meshes.size() - 1;
-}
-
-std::size_t TextureBaker::addImage(const std::string& name, std::string_view png)
-{
-	const std::size_t view = m_editor.addView(Document::object(), png);
-	Document image{{"name", name}, {"mimeType", "image/png"}, {"bufferView", view}};
-	items("images").push_back(std::move(image));
-	return items("images").size() - 1;
-}
-
-// The index of a texture made of a PNG file.
-std::size_t TextureBaker::textureOf(std::string_view png)
-{
-	const std::size_t image = addImage("visibility", png);
-	if (m_sampler == kNoNumber)
-	{
-		m_sampler = items("samplers").size();
-		items("samplers").push_back({{"magFilter", 9729U}, {"minFilter", 9987U}, {"wrapS", 33071U}, {"wrapT", 33071U}});
-	}
-	items("textures").push_back({{"sampler", m_sampler}, {"source", image}});
-	return items("textures").size() - 1;
-}
-
-// The texture that takes the values in its red channel, if any.
-std::size_t TextureBaker::roughOf(std::size_t material)
-{
-	const Document item = material == kNoNumber || !m_bake.in_red ? Document::object() : items("materials")[material];
-	const Document pbr = item.value("pbrMetallicRoughness", Document::object());
-	return pbr.contains(kRough) ? numberIn(pbr[kRough], "index") : kNoNumber;
-}
-
-// Its picture; throws unless that has 8 bits per channel.
-Image TextureBaker::pictureOf(std::size_t texture)
-{
-	const std::size_t number = numberIn(items("textures")[texture], "source");
-	const std::string where = "textures[" + std::to_string(texture) + "]";
-	if (number == kNoNumber)
-	{
-		m_editor.fail(where, "no image of the core format", "a PNG or JPEG for the red channel", ExitCode::unsupported);
-	}
-	const JsonValue item = m_editor.file.root().item("images", number);
-	const std::string uri = item.text("uri");
-	const std::string path = uri.empty() || uri.starts_with("data:") ? "" : besideLevel(m_editor.file.path, unescaped(uri));
-	checkInside(m_editor.file.path, "images[" + std::to_string(number) + "]", path, m_editor.file.settings);
-	const std::string bytes = !path.empty() ? readFile(path)
-							  : uri.empty() ? std::string(viewBytes(m_editor.file, numberIn(items("images")[number], "bufferView")))
-											: dataOf(uri, item).value_or("");
-	Image image = decodeImage(bytes, path.empty() ? "image.png" : path);
-	const auto is_fine = [](float value)
-	{
-		return std::fabs(255.0F * value - std::round(255.0F * value)) > 0.01F;
-	};
-	if (std::any_of(image.values.begin(), image.values.end(), is_fine))
-	{
-		m_editor.fail(where, "more than 8 bits per channel", "8 bits, for the red channel", ExitCode::unsupported);
-	}
-	return image;
-}
-
-// A copy of a texture with another picture, scaled to its size, as its red channel.
-std::size_t TextureBaker::withRed(std::size_t texture, std::string_view png)
-{
-	Document made = items("textures")[texture];
-	std::vector<AlphaImage> red = decodeAlphas({{"visibility.png", "", std::string(png), MaskChannel::red}}, m_editor.file.path);
-	const Mask values{"", red[0].width_px, red[0].height_px, Wrap::clamp, Wrap::clamp, std::move(red[0].alpha)};
-	made["source"] =
-		addImage(textIn(items("images")[numberIn(made, "source")], "name"), pngWithChannel(pictureOf(texture), 0, values));
-	items("textures").push_back(made);
-	return items("textures").size() - 1;
-}
-
-// Gives a material the texture, and keeps the strength of an earlier one.
-void TextureBaker::setTexture(std::size_t material, std::string_view png, std::size_t set)
-{
-	const std::size_t rough = roughOf(material);
-	const auto [known, is_new] = m_textures.try_emplace({png.data(), rough}, 0);
-	if (is_new)
-	{
-		known->second = rough == kNoNumber ? textureOf(png) : withRed(rough, png);
-	}
-	Document& item = items("materials")[material];
-	if (rough != kNoNumber)
-	{
-		item["pbrMetallicRoughness"][kRough]["index"] = known->second;
-	}
-	Document& to = item["occlusionTexture"];
-	Document use{{"index", known->second}, {"texCoord", set}};
-	if (to.contains("strength"))
-	{
-		use["strength"] = to["strength"];
-	}
-	to = std::move(use);
-}
-
-// The material of a primitive with a page of the texture: a copy if others keep it as it is, or it has another page.
-std::size_t TextureBaker::textured(std::size_t before, std::size_t page, std::string_view png, std::size_t set)
-{
-	const auto [known, is_new] = m_materials.try_emplace({before, page}, before);
-	const std::size_t next = items("materials").size();
-	if (is_new)
-	{
-		if (before == kNoNumber || !m_taken.insert(before).second)
-		{
-			known->second = next;
-			items("materials").push_back(before == kNoNumber ? Document::object() : items("materials")[before]);
-		}
-		setTexture(known->second, png, set);
-		m_materials.emplace(std::pair(known->second, page), known->second);
-	}
-	return known->second;
-}
-
-// The first set of coordinates that no primitive has.
-std::size_t TextureBaker::freeSet(const std::vector<MeshUnit>& units)
-{
-	int set = 0;
-	for (const MeshUnit& unit : units)
-	{
-		for (const auto& [primitive, at] : unit.primitives)
-		{
-			set = std::max(set, firstFreeSet(primitiveOf(unit.mesh, primitive)["attributes"]));
-		}
-	}
-	if (set > kMostSet)
-	{
-		m_editor.fail("meshes", "no free set of texture coordinates, with TEXCOORD_" + std::to_string(kMostSet) + " in use",
-					  "at most " + std::to_string(kMostSet) + " of them");
-	}
-	return static_cast<std::size_t>(set);
-}
-
-// Materials that other primitives have stay as they are.
-void TextureBaker::keepOthers(const std::vector<MeshUnit>& units)
-{
-	const std::set<std::size_t> meshes = meshesOfOthers(m_editor, units);
-	std::set<std::pair<std::size_t, std::size_t>> textured;
-	for (const MeshUnit& unit : units)
-	{
-		for (const auto& [primitive, at] : unit.primitives)
-		{
-			textured.emplace(unit.mesh, primitive);
-		}
-	}
-	for (std::size_t mesh = 0; mesh < items("meshes").size(); ++mesh)
-	{
-		for (std::size_t i = 0; i < items("meshes")[mesh]["primitives"].size(); ++i)
-		{
-			if ((m_bake.others_stay && meshes.contains(mesh)) || !textured.contains({mesh, i}))
-			{
-				m_taken.insert(numberIn(primitiveOf(mesh, i), "material"));
-			}
-		}
-	}
-}
-
-// A primitive of a node's own mesh: one for each page.
-void TextureBaker::addCharts(const MeshUnit& unit, std::size_t number, std::size_t mesh, const GltfCharts& charts, std::size_t set)
-{
-	const auto [shared, is_new] = m_split.try_emplace({unit.mesh, number}, primitiveOf(mesh, number));
-	if (is_new)
-	{
-		addVertices(m_editor, shared->second, charts.copied);
-	}
-	Document primitive = shared->second;
-	const std::size_t before = numberIn(primitive, "material");
-	std::string uvs;
-	std::for_each(charts.uvs.begin(), charts.uvs.end(), [&uvs](glm::vec2 uv) { appendRaw(uvs, uv); });
-	const std::size_t coordinates = m_editor.addAccessor("VEC2", 5126, charts.uvs.size(), uvs);
-	for (std::size_t i = 0; i <= set; ++i) // sets have no gaps
-	{
-		Document& to = primitive["attributes"][setName(static_cast<int>(i))];
-		to = to.is_null() ? Document(coordinates) : to;
-	}
-	primitive["mode"] = 4U;
-	std::size_t at = number; // further pages go behind the mesh's primitives
-	for (std::size_t page = 0; page < charts.pages.size(); ++page)
-	{
-		const std::vector<uint32_t>& indices = charts.pages[page];
-		if (indices.empty())
-		{
-			continue;
-		}
-		const auto [accessor, is_new_list] = m_indices.try_emplace({unit.mesh, number, indices}, 0);
-		if (is_new_list)
-		{
-			const std::string bytes(reinterpret_cast<const char*>(indices.data()), 4 * indices.size());
-			accessor->second = m_editor.addAccessor("SCALAR", 5125, indices.size(), bytes, true);
-		}
-		primitive["indices"] = accessor->second;
-		primitive["material"] = textured(before, page, m_bake.pages[page], set);
-		Document& all = items("meshes")[mesh]["primitives"];
-		all[at] = primitive;
-		at = all.size();
-	}
-}
-
-void TextureBaker::check(const std::vector<MeshUnit>& units)
-{
-	for (const MeshUnit& unit : units)
-	{
-		for (const auto& [number, at] : unit.primitives)
-		{
-			if (const std::size_t rough = roughOf(numberIn(primitiveOf(unit.mesh, number), "material")); rough != kNoNumber)
-			{
-				pictureOf(rough);
-			}
-		}
-	}
-	if (!m_bake.charts.empty())
-	{
-		freeSet(units);
-	}
-}
-
-std::size_t TextureBaker::add(std::span<const GltfPlace> places, const std::vector<MeshUnit>& units)
-{
-	const bool has_charts = !m_bake.charts.empty();
-	if (has_charts || m_bake.others_stay)
-	{
-		keepOthers(units);
-	}
-	const std::size_t free = has_charts ? freeSet(units) : 0;
-	OwnMeshes own(m_editor);
-	for (const MeshUnit& unit : units)
-	{
-		const std::size_t node = unit.nodes.front();
-		const std::size_t mesh = has_charts ? own.meshOf(node) : numberIn(items("nodes")[node], "mesh");
-		for (const auto& [number, at] : unit.primitives)
-		{
-			if (has_charts)
-			{
-				addCharts(unit, number, mesh, m_bake.charts[static_cast<std::size_t>(at.front() - places.data())], free);
-				continue;
-			}
-			const std::size_t before = numberIn(primitiveOf(mesh, number), "material");
-			const auto set = set_of_material.find(before);
-			const auto of_file = static_cast<std::size_t>(m_bake.uv_set.value_or(0));
-			primitiveOf(mesh, number)["material"] =
-				textured(before, 0, m_bake.png, set != set_of_material.end() ? static_cast<std::size_t>(set->second) : of_file);
-		}
-	}
-	return own.copies;
+	return TextureBaker(editor, bake).add(places, units, set_of_material);
 }
 
 } // namespace nook

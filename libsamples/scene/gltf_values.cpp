@@ -70,6 +70,34 @@ std::vector<glm::dmat4> worldsOf(const std::vector<JsonValue>& nodes)
 	return worlds;
 }
 
+// This work is based on: Khronos Group, "EXT_mesh_gpu_instancing", glTF extensions.
+
+// Reads an attribute, if present. `wide`: normalised integers are allowed too.
+std::optional<GltfValues> attributeOf(GltfFile& file, const JsonValue& attributes, std::string_view name, std::string_view type,
+									  bool wide)
+{
+	const JsonValue root = file.root();
+	const std::optional<std::size_t> index = attributes.index(name, root.count("accessors"));
+	if (!index)
+	{
+		return std::nullopt;
+	}
+	const JsonValue accessor = root.item("accessors", *index);
+	const uint64_t component = accessor.wholeNeeded("componentType", UINT16_MAX);
+	const bool whole = (component == 5120 || component == 5122) && accessor.boolean("normalized", false);
+	if (accessor.text("type") != type || !(component == 5126 || (wide && whole)))
+	{
+		attributes.fail(name, "an accessor of type " + accessor.text("type") + " of " + std::to_string(component),
+						std::string(type) + (wide ? " of 5126, or of 5120 or 5122 normalised" : " of 5126"));
+	}
+	if (!accessor.has("bufferView"))
+	{
+		attributes.fail(name, "an accessor that no buffer holds",
+						"one of a bufferView"); // a count alone could request any amount of memory
+	}
+	return GltfValues(file, *index);
+}
+
 } // namespace
 
 std::size_t bytesOfComponent(uint64_t component)
@@ -288,39 +316,6 @@ glm::dmat4 PoseValues::skin(const std::vector<glm::dmat4>& matrices, std::size_t
 	}
 	return sum > 0.0 ? mean / sum : matrixOf(*joints.front().first, 0);
 }
-
-// This work is based on: Khronos Group, "EXT_mesh_gpu_instancing", glTF extensions.
-
-namespace
-{
-
-// Reads an attribute, if present. `wide`: normalised integers are allowed too.
-std::optional<GltfValues> attributeOf(GltfFile& file, const JsonValue& attributes, std::string_view name, std::string_view type,
-									  bool wide)
-{
-	const JsonValue root = file.root();
-	const std::optional<std::size_t> index = attributes.index(name, root.count("accessors"));
-	if (!index)
-	{
-		return std::nullopt;
-	}
-	const JsonValue accessor = root.item("accessors", *index);
-	const uint64_t component = accessor.wholeNeeded("componentType", UINT16_MAX);
-	const bool whole = (component == 5120 || component == 5122) && accessor.boolean("normalized", false);
-	if (accessor.text("type") != type || !(component == 5126 || (wide && whole)))
-	{
-		attributes.fail(name, "an accessor of type " + accessor.text("type") + " of " + std::to_string(component),
-						std::string(type) + (wide ? " of 5126, or of 5120 or 5122 normalised" : " of 5126"));
-	}
-	if (!accessor.has("bufferView"))
-	{
-		attributes.fail(name, "an accessor that no buffer holds",
-						"one of a bufferView"); // a count alone could request any amount of memory
-	}
-	return GltfValues(file, *index);
-}
-
-} // namespace
 
 glm::dmat4 placeOf(glm::dvec3 translation, glm::dvec4 rotation, glm::dvec3 scale)
 {

@@ -139,8 +139,6 @@ AlphaCounts countAlpha(const Mask& mask);
 void measureAlpha(Material& material, const std::vector<Mask>& masks);
 void measureAlpha(Material& material, const AlphaCounts& counts);
 
-// Chooses parts of a level.
-
 // Returns 1 for each triangle that one of the patterns chooses. A pattern chooses nodes by name, with everything below them, and
 // meshes: "Lamp", "Lamp*"; by path: "/Room/**/Lamp", "Room/*"; "material:GLOB"; "extras:KEY" or "extras:KEY=VALUE" of nodes,
 // meshes and materials. Empty without patterns. Throws Error (usage) for a pattern that chooses no triangle; `option` names it.
@@ -154,11 +152,6 @@ struct LevelPart
 {
 	Level level;
 	std::vector<uint32_t> vertices; // per vertex of the whole level: its index in the part, or UINT32_MAX
-
-	glm::uvec3 triangle(glm::uvec3 whole) const
-	{
-		return {vertices[whole.x], vertices[whole.y], vertices[whole.z]};
-	}
 };
 LevelPart partOf(const Level& level, std::span<const uint8_t> marks, int threads);
 

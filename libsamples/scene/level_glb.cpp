@@ -7,10 +7,12 @@
 #include "core/file.h"
 #include "core/image.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "core/words.h"
 #include "scene/gltf_file.h"
 
+#include <glm/gtc/type_ptr.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -190,11 +192,7 @@ public:
 			add(camera);
 		}
 		const std::string chunk = takeBuffer();
-		Json nodes = Json::array();
-		for (std::size_t i = 0; i < m_nodes.size(); ++i)
-		{
-			nodes.push_back(i);
-		}
+		const Json nodes = listOf(m_nodes.size(), [](std::size_t i) { return i; });
 		Json root{{"asset", {{"version", "2.0"}, {"generator", generator}}}, {"scene", 0}};
 		root["scenes"] = Json::array({Json{{"nodes", nodes}}});
 		const std::array<std::pair<const char*, const Json*>, 9> parts{{{"nodes", &m_nodes},
@@ -261,7 +259,7 @@ private:
 		std::vector<uint32_t> triangles;
 		std::vector<glm::uvec3> corners;
 		std::size_t first_triangle = mesh.first_triangle;
-		const std::size_t first_index = m_indices.size() / sizeof(uint32_t);
+		const std::size_t first_index = m_data[kIndices].size() / sizeof(uint32_t);
 		for (std::size_t t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t)
 		{
 			first_triangle = vertices.empty() ? t : first_triangle;
@@ -273,42 +271,31 @@ private:
 			{
 				corners.resize(triangles.size());
 				corners.back()[corner] = slotOf(m_level.triangles[t][corner], vertices);
-				appendRaw(m_indices, corners.back()[corner]);
+				appendRaw(m_data[kIndices], corners.back()[corner]);
 			}
 		}
-		const std::size_t indices = m_indices.size() / sizeof(uint32_t) - first_index;
+		const std::size_t indices = m_data[kIndices].size() / sizeof(uint32_t) - first_index;
 		Json attributes{{"POSITION", positions(vertices)}};
-		const auto has_normal = [this](uint32_t v)
+		const auto add = [&](const char* name, View view, const char* type, const auto& values)
 		{
-			return m_level.normals[v] != glm::vec3(0.0F);
-		};
-		if (std::all_of(vertices.begin(), vertices.end(), has_normal))
-		{
-			attributes["NORMAL"] = accessor(kNormals, "VEC3", m_normals.size(), vertices.size());
+			attributes[name] = accessor(view, type, m_data[view].size(), vertices.size());
 			for (const uint32_t v : vertices)
 			{
-				appendRaw(m_normals, m_level.normals[v]);
+				appendRaw(m_data[view], values[v]);
 			}
+		};
+		if (std::all_of(vertices.begin(), vertices.end(), [this](uint32_t v) { return m_level.normals[v] != glm::vec3(0.0F); }))
+		{
+			add("NORMAL", kNormals, "VEC3", m_level.normals);
 		}
-		const auto is_coloured = [this](uint32_t v)
+		if (!m_level.colours.empty() &&
+			std::any_of(vertices.begin(), vertices.end(), [this](uint32_t v) { return m_level.colours[v] != glm::vec3(1.0F); }))
 		{
-			return m_level.colours[v] != glm::vec3(1.0F);
-		};
-		if (!m_level.colours.empty() && std::any_of(vertices.begin(), vertices.end(), is_coloured))
-		{
-			attributes["COLOR_0"] = accessor(kColours, "VEC3", m_colours.size(), vertices.size());
-			for (const uint32_t v : vertices)
-			{
-				appendRaw(m_colours, m_level.colours[v]);
-			}
+			add("COLOR_0", kColours, "VEC3", m_level.colours);
 		}
 		if (m_materials.hasPicture(material))
 		{
-			attributes["TEXCOORD_0"] = accessor(kUvs, "VEC2", m_uvs.size(), vertices.size());
-			for (const uint32_t v : vertices)
-			{
-				appendRaw(m_uvs, m_level.uvs[v]);
-			}
+			add("TEXCOORD_0", kUvs, "VEC2", m_level.uvs);
 		}
 		if (m_places != nullptr)
 		{
@@ -320,10 +307,8 @@ private:
 			place.triangles = std::move(triangles);
 			place.corners = std::move(corners);
 			place.mesh = m_meshes.size();
-			for (std::size_t v = 0; v < vertices.size(); ++v)
-			{
-				place.vertices.emplace_back(static_cast<uint32_t>(v), vertices[v]);
-			}
+			place.vertices =
+				listOf(vertices.size(), [&](std::size_t v) { return std::pair(static_cast<uint32_t>(v), vertices[v]); });
 		}
 		return {{"attributes", attributes},
 				{"indices", accessor(kIndices, "SCALAR", first_index * sizeof(uint32_t), indices)},
@@ -343,7 +328,7 @@ private:
 
 	std::size_t positions(const std::vector<uint32_t>& vertices)
 	{
-		const std::size_t made = accessor(kPositions, "VEC3", m_positions.size(), vertices.size());
+		const std::size_t made = accessor(kPositions, "VEC3", m_data[kPositions].size(), vertices.size());
 		glm::vec3 least(std::numeric_limits<float>::max());
 		glm::vec3 most(std::numeric_limits<float>::lowest());
 		for (const uint32_t v : vertices)
@@ -351,7 +336,7 @@ private:
 			const glm::vec3 position(m_level.positions[v] - m_origin);
 			least = glm::min(least, position);
 			most = glm::max(most, position);
-			appendRaw(m_positions, position);
+			appendRaw(m_data[kPositions], position);
 		}
 		m_accessors[made]["min"] = listed(least);
 		m_accessors[made]["max"] = listed(most);
@@ -399,11 +384,8 @@ private:
 				item["perspective"]["zfar"] = lens.far_m;
 			}
 		}
-		Json matrix = Json::array();
-		for (int i = 0; i < 16; ++i)
-		{
-			matrix.push_back(camera.world_from_camera[i / 4][i % 4]);
-		}
+		const double* const numbers = glm::value_ptr(camera.world_from_camera);
+		const Json matrix = std::vector(numbers, numbers + 16);
 		m_nodes.push_back({{"name", camera.name}, {"camera", m_cameras.size()}, {"matrix", matrix}});
 		m_cameras.push_back(item);
 	}
@@ -413,14 +395,13 @@ private:
 	{
 		std::string buffer;
 		std::array<std::size_t, kViews> number{};
-		const std::array<std::string*, kViews> parts{&m_positions, &m_normals, &m_uvs, &m_colours, &m_indices};
 		constexpr std::array<std::size_t, kViews> kStrides{12, 12, 8, 12, 0};
 		for (std::size_t i = 0; i < kViews; ++i)
 		{
 			number[i] = m_views.size();
-			if (!parts[i]->empty())
+			if (!m_data[i].empty())
 			{
-				addView(buffer, *parts[i]);
+				addView(buffer, m_data[i]);
 				m_views.back()["target"] = i == kIndices ? kIndexData : kVertexData;
 				if (i != kIndices)
 				{
@@ -467,11 +448,7 @@ private:
 	uint64_t m_current = 0;
 
 	GlbMaterials m_materials;
-	std::string m_positions;
-	std::string m_normals;
-	std::string m_uvs;
-	std::string m_colours;
-	std::string m_indices;
+	std::array<std::string, kViews> m_data; // of each view
 	Json m_nodes = Json::array();
 	Json m_cameras = Json::array();
 	Json m_meshes = Json::array();

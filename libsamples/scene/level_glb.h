@@ -70,8 +70,7 @@ struct GlbBake
 	BakedKind kind = BakedKind::visibility; // determines attribute names and range
 };
 
-// Reads the vertex values of a file made by nook bake.
-
+// The vertex values of a file made by nook bake.
 struct BakedValues
 {
 	BakedKind kind = BakedKind::visibility;

@@ -439,11 +439,8 @@ LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, con
 LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run)
 {
 	assert(!levels.empty());
-	const auto has_mtl = [](const PlacedLevel& placed)
-	{
-		return endingOf(placed.name) == ".obj";
-	};
-	if (settings.tr != TrMeaning::automatic && std::none_of(levels.begin(), levels.end(), has_mtl))
+	if (settings.tr != TrMeaning::automatic &&
+		std::none_of(levels.begin(), levels.end(), [](const PlacedLevel& placed) { return endingOf(placed.name) == ".obj"; }))
 	{
 		refuseInput("tr", "with " + levels.front().name, "an OBJ file, whose MTL files it is for", ExitCode::usage);
 	}
@@ -461,12 +458,9 @@ LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& 
 		{
 			loaded = readLevels(levels, settings, run);
 			hashes = hashesOf(loaded.level.files);
-			const auto is_missing = [](const Finding& finding)
-			{
-				return finding.id == "missing-file";
-			};
-			return std::none_of(loaded.diagnosis.findings.begin(), loaded.diagnosis.findings.end(), is_missing) &&
-				   hashes.size() == loaded.level.files.size();
+			return hashes.size() == loaded.level.files.size() &&
+				   std::none_of(loaded.diagnosis.findings.begin(), loaded.diagnosis.findings.end(),
+								[](const Finding& finding) { return finding.id == "missing-file"; });
 		},
 		[&](Archive& archive)
 		{

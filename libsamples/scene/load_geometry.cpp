@@ -76,22 +76,14 @@ private:
 		return value;
 	}
 
-	struct Texture
+	PlacedPicture picture()
 	{
-		std::string name;
-		MaskUse use;
-		glm::dmat3 uv_of_set{1.0};
-		std::vector<char> bytes;
-	};
-
-	Texture texture()
-	{
-		Texture texture;
-		texture.name = m_from.text();
-		texture.use = m_from.value<MaskUse>();
-		texture.uv_of_set = m_from.value<glm::dmat3>();
-		m_from.values(texture.bytes, kMaxFileBytes);
-		return texture;
+		PlacedPicture picture;
+		picture.name = m_from.text();
+		static_cast<MaskUse&>(picture) = m_from.value<MaskUse>();
+		picture.uv_of_set = m_from.value<glm::dmat3>();
+		m_from.values(picture.bytes, kMaxFileBytes);
+		return picture;
 	}
 
 	void materials()
@@ -103,8 +95,8 @@ private:
 			made.material.alpha = static_cast<double>(m_from.value<float>());
 			made.material.two_sided = m_from.value<int>() != 0;
 			made.material.colour = m_from.value<glm::vec3>();
-			Texture opacity = texture();
-			const Texture colour = texture();
+			PlacedPicture opacity = picture();
+			const PlacedPicture colour = picture();
 			made.uv_of_set = opacity.name.empty() ? colour.uv_of_set : opacity.uv_of_set;
 			if (!std::isfinite(made.material.alpha) || made.material.alpha < 0.0 || made.material.alpha > 1.0)
 			{
@@ -121,13 +113,13 @@ private:
 				made.material.alpha_mode = AlphaMode::blend;
 			}
 			made.material.picture = pictureOf(colour);
-			made.material.wraps = {colour.use.wrap_u, colour.use.wrap_v};
+			made.material.wraps = {colour.wrap_u, colour.wrap_v};
 		}
 	}
 
-	std::string pictureOf(const Texture& texture)
+	std::string pictureOf(const MaskSource& texture)
 	{
-		const std::string_view bytes(texture.bytes.data(), texture.bytes.size());
+		const std::string_view bytes = texture.bytes;
 		if (!bytes.empty())
 		{
 			const std::string type = bytes.starts_with("\x89PNG") ? "png" : bytes.starts_with("\xff\xd8") ? "jpeg" : "";
@@ -144,22 +136,18 @@ private:
 		return m_source.missing.size() > missing ? "" : path;
 	}
 
-	int maskOf(Texture texture)
+	int maskOf(MaskSource mask)
 	{
-		for (std::size_t i = 0; i < m_source.masks.size(); ++i)
+		const auto same = std::find_if(m_source.masks.begin(), m_source.masks.end(),
+									   [&mask](const MaskSource& other)
+									   { return other.name == mask.name && static_cast<const MaskUse&>(other) == mask; });
+		const auto index = static_cast<int>(same - m_source.masks.begin());
+		if (same == m_source.masks.end())
 		{
-			const MaskSource& other = m_source.masks[i];
-			if (other.name == texture.name && other == texture.use)
-			{
-				return static_cast<int>(i);
-			}
+			mask.path = mask.bytes.empty() ? besideLevel(m_path, mask.name) : "";
+			m_source.masks.push_back(std::move(mask));
 		}
-		MaskSource& mask = m_source.masks.emplace_back();
-		static_cast<MaskUse&>(mask) = texture.use;
-		mask.name = texture.name;
-		mask.bytes.assign(texture.bytes.begin(), texture.bytes.end());
-		mask.path = mask.bytes.empty() ? besideLevel(m_path, texture.name) : "";
-		return static_cast<int>(m_source.masks.size()) - 1;
+		return index;
 	}
 
 	void cameras()
@@ -264,30 +252,7 @@ std::size_t bytesOf(const std::vector<std::string>& files)
 	return bytes;
 }
 
-} // namespace
-
-IsolationLimits levelLimits(std::size_t bytes)
-{
-	return {kMemoryFloor + kMemoryPerByte * bytes, kTimeFloor_s + static_cast<int>(bytes / kBytesPerSecond)};
-}
-
-void readGeometry(const std::string& path, const LoadSettings& settings, LevelSource& source, Level& level)
-{
-	const std::size_t bytes = bytesOf(source.files);
-	isolate(
-		{kLevelWorker, kReadLevel}, path, levelLimits(bytes),
-		[&](ValueWriter& to)
-		{
-			to.text(path);
-			to.value(static_cast<const FileSettings&>(settings));
-		},
-		[&](ValueReader& from) { Receiver(path, source, level, from).run(); });
-}
-
 // Decodes mask pictures and converts materials and cameras to the level's form.
-
-namespace
-{
 
 // Rejects a file that is missing, or outside the level's folder.
 void checkThere(const LoadSettings& settings, const LevelSource& source, const std::string& level_path)
@@ -409,6 +374,24 @@ void dropFarCameras(Level& level, std::vector<Finding>& findings)
 }
 
 } // namespace
+
+IsolationLimits levelLimits(std::size_t bytes)
+{
+	return {kMemoryFloor + kMemoryPerByte * bytes, kTimeFloor_s + static_cast<int>(bytes / kBytesPerSecond)};
+}
+
+void readGeometry(const std::string& path, const LoadSettings& settings, LevelSource& source, Level& level)
+{
+	const std::size_t bytes = bytesOf(source.files);
+	isolate(
+		{kLevelWorker, kReadLevel}, path, levelLimits(bytes),
+		[&](ValueWriter& to)
+		{
+			to.text(path);
+			to.value(static_cast<const FileSettings&>(settings));
+		},
+		[&](ValueReader& from) { Receiver(path, source, level, from).run(); });
+}
 
 void finishMaterials(const LoadSettings& settings, LevelSource& source, Level& level)
 {

@@ -7,18 +7,17 @@
 #include "core/progress.h"
 #include "scene/level.h"
 #include "scene/load.h"
-#include <functional>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
-#include <span>
 
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +48,12 @@ struct MaskSource : MaskUse
 	std::string bytes; // file contents, if embedded in another file
 	bool nearest = false;
 	bool ramp = false; // no picture: alpha is u, for surfaces with vertex alphas
+};
+
+// A picture, and how its coordinates follow from a set.
+struct PlacedPicture : MaskSource
+{
+	glm::dmat3 uv_of_set{1.0};
 };
 
 struct SourceMaterial
@@ -195,13 +200,9 @@ std::string endingOf(const std::string& path);
 // Decodes the masks and moves materials and cameras to the level.
 void finishMaterials(const LoadSettings& settings, LevelSource& source, Level& level);
 
-// Removes triangles from a level, and everything that becomes unused.
-
 // Drops the triangles with keep[i] = 0, vertices that no other triangle uses (their indices may be out of range), and meshes that
 // become empty. Preserves the order. `before`: becomes the earlier index of each vertex that is left.
 void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std::vector<uint32_t>* before = nullptr);
-
-// Loads texture coordinates of a level, for lightmaps.
 
 // TEXCOORD_1 of a glTF, or another set, one per vertex of `level`, the result of loadLevel() for the same name and settings; NaN
 // for vertices without. The level's vertices do not depend on these coordinates.

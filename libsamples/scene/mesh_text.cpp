@@ -89,13 +89,6 @@ bool hasWord(std::string_view words, std::string_view word)
 	return (" " + std::string(words) + " ").find(" " + std::string(word) + " ") != std::string::npos;
 }
 
-// Digits with an optional sign.
-bool isWholeText(std::string_view word)
-{
-	const std::string_view digits = withoutSign(word);
-	return !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos;
-}
-
 class PlyReader
 {
 public:
@@ -291,7 +284,8 @@ private:
 	bool word(const Property& property, double& value)
 	{
 		const std::string_view text = nextWord();
-		const std::optional<double> number = !property.whole || isWholeText(text) ? numberOf(text) : std::nullopt;
+		const bool digits = withoutSign(text).find_first_not_of("0123456789") == std::string_view::npos;
+		const std::optional<double> number = !property.whole || digits ? numberOf(text) : std::nullopt;
 		if (!text.empty() && !number)
 		{
 			refuseInput(m_path + ": byte " + std::to_string(m_at - text.size()), quoted(text),

@@ -21,9 +21,8 @@
 namespace nook
 {
 
-struct MtlPicture : MaskSource // an empty name means none
+struct MtlPicture : PlacedPicture // an empty name means none
 {
-	glm::dmat3 uv_of_set{1.0};
 	std::string ignored; // the first unsupported option
 };
 

@@ -91,11 +91,8 @@ private:
 
 	void dropComment()
 	{
-		const auto begins = [](std::string_view word)
-		{
-			return word.starts_with('#');
-		};
-		m_words.erase(std::find_if(m_words.begin(), m_words.end(), begins), m_words.end());
+		m_words.erase(std::find_if(m_words.begin(), m_words.end(), [](std::string_view word) { return word.starts_with('#'); }),
+					  m_words.end());
 	}
 
 	void takeElement(std::string_view keyword, const TextPlace& place)

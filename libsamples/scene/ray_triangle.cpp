@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/ray_triangle.h"
 
+#include "core/lists.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -60,13 +62,7 @@ glm::dvec3 twiceAreaOf(const Level& level, std::size_t triangle)
 
 std::vector<double> areasOf(const Level& level)
 {
-	std::vector<double> areas;
-	areas.reserve(level.triangles.size());
-	for (std::size_t t = 0; t < level.triangles.size(); ++t)
-	{
-		areas.push_back(0.5 * glm::length(twiceAreaOf(level, t)));
-	}
-	return areas;
+	return listOf(level.triangles.size(), [&level](std::size_t t) { return 0.5 * glm::length(twiceAreaOf(level, t)); });
 }
 
 glm::dvec3 geometricNormal(const Level& level, uint32_t triangle)

@@ -43,8 +43,6 @@ glm::dvec3 twiceAreaOf(const Level& level, std::size_t triangle);
 // Area of each triangle in square metres.
 std::vector<double> areasOf(const Level& level);
 
-// Shading normals at a position on a triangle.
-
 // Unit normal of the counter-clockwise side. Requires a triangle with area.
 glm::dvec3 geometricNormal(const Level& level, uint32_t triangle);
 

@@ -60,15 +60,7 @@ constexpr int kFirstBatch = 32; // with max_error; each later batch is as large 
 
 SampleDomain domainOf(ReferenceMeasure measure)
 {
-	switch (measure)
-	{
-	case ReferenceMeasure::obscurance:
-	case ReferenceMeasure::bent: return SampleDomain::hemisphere;
-	case ReferenceMeasure::sphere:
-	case ReferenceMeasure::hemisphere: return SampleDomain::ball;
-	case ReferenceMeasure::box: break;
-	}
-	return SampleDomain::box;
+	return isByRays(measure) ? SampleDomain::hemisphere : measure == ReferenceMeasure::box ? SampleDomain::box : SampleDomain::ball;
 }
 
 // Sample sets for one run, and the order in which a point uses them.
@@ -129,16 +121,6 @@ void turnTo(glm::vec3 n, Scratch& scratch)
 	{
 		const glm::vec3 p = scratch[i];
 		scratch.put(i, t * p.x + b * p.y + n * p.z);
-	}
-}
-
-// VO §4.4: mirrors samples below the tangent plane.
-void foldOver(glm::vec3 n, Scratch& scratch)
-{
-	for (std::size_t i = 0; i < scratch.x.size(); ++i)
-	{
-		const float below = std::min(0.0F, scratch.x[i] * n.x + scratch.y[i] * n.y + scratch.z[i] * n.z);
-		scratch.put(i, scratch[i] - 2.0F * below * n);
 	}
 }
 
@@ -238,14 +220,14 @@ void placeVolume(const ReferenceSettings& settings, glm::vec3 normal, const glm:
 				 Scratch& scratch)
 {
 	set.place(random, scratch.x, scratch.y, scratch.z);
-	if (settings.measure == ReferenceMeasure::hemisphere)
-	{
-		foldOver(normal, scratch);
-	}
 	const auto radius_m = static_cast<float>(settings.radius_m);
 	for (std::size_t i = 0; i < scratch.x.size(); ++i)
 	{
-		const glm::vec3 p = scratch[i];
+		glm::vec3 p = scratch[i];
+		if (settings.measure == ReferenceMeasure::hemisphere) // VO §4.4: mirrors samples below the tangent plane
+		{
+			p -= 2.0F * std::min(0.0F, p.x * normal.x + p.y * normal.y + p.z * normal.z) * normal;
+		}
 		scratch.put(i, radius_m * (settings.measure == ReferenceMeasure::box ? camera * p : p));
 	}
 }
@@ -536,11 +518,11 @@ std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuff
 
 	std::vector<ReferenceValue> values(gbuffer.depth.size());
 	const auto width = static_cast<std::size_t>(gbuffer.width_px);
-	const auto compute = [&](std::size_t pixel)
-	{
-		values[pixel] = pixelValue(static_cast<int>(pixel % width), static_cast<int>(pixel / width), pixel);
-	};
-	computeValues(tilesOf(gbuffer), settings, values, compute, run);
+	computeValues(
+		tilesOf(gbuffer), settings, values,
+		[&](std::size_t pixel)
+		{ values[pixel] = pixelValue(static_cast<int>(pixel % width), static_cast<int>(pixel / width), pixel); },
+		run);
 	return values;
 }
 
@@ -592,13 +574,6 @@ DepthMatter::DepthMatter(const GBuffer& gbuffer, const RunSettings& run)
 	}
 }
 
-bool DepthMatter::isMatter(glm::dvec3 position, glm::dvec2 pixel) const
-{
-	const auto index = static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(m_width_px) + static_cast<std::size_t>(pixel.x);
-	const Plane& plane = m_planes[index];
-	return glm::dot(plane.normal, position) < plane.offset;
-}
-
 void DepthMatter::sample(glm::dvec3 origin, const Directions& offsets, std::span<float> matter) const
 {
 	double sum = 0.0;
@@ -612,7 +587,9 @@ void DepthMatter::sample(glm::dvec3 origin, const Directions& offsets, std::span
 			const glm::dvec2 pixel = m_projector.front().pixelOf(position);
 			if (pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < m_width_px && pixel.y < m_height_px)
 			{
-				matter[i] = isMatter(position, pixel) ? 1.0F : 0.0F;
+				const Plane& plane = m_planes[static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(m_width_px) +
+											  static_cast<std::size_t>(pixel.x)];
+				matter[i] = glm::dot(plane.normal, position) < plane.offset ? 1.0F : 0.0F;
 				sum += static_cast<double>(matter[i]);
 				known += 1;
 			}

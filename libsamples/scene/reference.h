@@ -108,8 +108,6 @@ std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuff
 // need surfaces at any distance. The level must have triangles.
 std::optional<Vicinity> reachOf(const Level& level, const GBuffer& gbuffer, const ReferenceSettings& settings);
 
-// Finds the sample points of a volume that are in matter: by the geometry, or by a depth buffer alone.
-
 // Sets matter[i] to 1 if origin + offset i is inside a solid, else to 0. `origin` (world) is in the open. A point visible from
 // `origin` is open; any other is inside if most of nine directions from it hit the back of a surface first (inside a solid all are
 // backs; a single sheet has its back on one side). Masked surfaces have no inside.
@@ -135,15 +133,11 @@ private:
 		glm::dvec3 normal{0.0}; // faces the camera
 		double offset = 0.0;    // matter is where normal · position is smaller
 	};
-	bool isMatter(glm::dvec3 position, glm::dvec2 pixel) const;
-
 	std::vector<Plane> m_planes;
 	std::vector<Projector> m_projector; // zero or one
 	int m_width_px = 0;
 	int m_height_px = 0;
 };
-
-// Reads points from a file and writes reference visibility.
 
 // A point from another program; none if a position is further than kFarthest_m or not a number, or the normal has no direction.
 // Positions are assumed to be rounded to 32 bits: rays start that much above them.

@@ -59,13 +59,6 @@ double roundingOf(double size_m)
 	return size_m * (size_m < kLarge_m ? 0x1p-24 : 0x1p-53);
 }
 
-std::string withoutBlanks(std::string_view text)
-{
-	std::string kept(text);
-	std::erase_if(kept, [](char c) { return c == ' ' || c == '\t' || c == '"'; });
-	return kept;
-}
-
 std::string rowOf(const ReferenceValue& value)
 {
 	return numberText(value.visibility) + "," + numberText(value.standard_error) + "," + std::to_string(value.rays);
@@ -96,7 +89,9 @@ std::vector<ReferencePoint> readPoints(const std::string& path)
 		const std::size_t end = rest.find('\n');
 		const std::string_view row = trimmed(rest.substr(0, end));
 		rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-		const bool header = first && withoutBlanks(row) == kHeader;
+		std::string names(row);
+		std::erase_if(names, [](char c) { return c == ' ' || c == '\t' || c == '"'; });
+		const bool header = first && names == kHeader;
 		if (row.empty() || row.front() == '#' || header)
 		{
 			first = first && !header;
@@ -159,11 +154,9 @@ std::string bentExr(int width_px, int height_px, std::span<const glm::vec3> bent
 
 std::string bentPng(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes)
 {
-	const auto bentOf = [](const ReferenceValue& value)
-	{
-		return value.rays == 0 ? glm::vec3(0.0F) : value.bent;
-	};
-	return bentPng(width_px, height_px, mapped(values, bentOf), notes);
+	return bentPng(width_px, height_px,
+				   mapped(values, [](const ReferenceValue& value) { return value.rays == 0 ? glm::vec3(0.0F) : value.bent; }),
+				   notes);
 }
 
 std::string bentPng(int width_px, int height_px, std::span<const glm::vec3> bent, const Notes& notes)
@@ -203,11 +196,8 @@ std::string visibilityExr(int width_px, int height_px, std::span<const float> vi
 
 std::string visibilityPng(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes)
 {
-	const auto visibilityOf = [](const ReferenceValue& value)
-	{
-		return static_cast<float>(value.visibility);
-	};
-	return visibilityPng(width_px, height_px, mapped(values, visibilityOf), notes);
+	return visibilityPng(width_px, height_px,
+						 mapped(values, [](const ReferenceValue& value) { return static_cast<float>(value.visibility); }), notes);
 }
 
 std::string visibilityPng(int width_px, int height_px, std::span<const float> visibility, const Notes& notes)

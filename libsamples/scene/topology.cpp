@@ -36,15 +36,7 @@ Buckets bucketsOf(std::span<const uint64_t> hashes, int threads)
 	{
 		return hashes[i] >> 56U;
 	};
-	parallelFor(blocks, threads,
-				[&](std::size_t block)
-				{
-					counts[block] = {};
-					for (std::size_t i = block * kParallelBlock; i < std::min(hashes.size(), (block + 1) * kParallelBlock); ++i)
-					{
-						counts[block][bucketOf(i)] += 1;
-					}
-				});
+	parallelForAll(hashes.size(), threads, [&](std::size_t i) { counts[i / kParallelBlock][bucketOf(i)] += 1; });
 	Buckets buckets;
 	buckets.items.resize(hashes.size());
 	std::size_t at = 0;
@@ -59,14 +51,8 @@ Buckets bucketsOf(std::span<const uint64_t> hashes, int threads)
 		}
 	}
 	buckets.starts[kBuckets] = at;
-	parallelFor(blocks, threads,
-				[&](std::size_t block)
-				{
-					for (std::size_t i = block * kParallelBlock; i < std::min(hashes.size(), (block + 1) * kParallelBlock); ++i)
-					{
-						buckets.items[counts[block][bucketOf(i)]++] = static_cast<uint32_t>(i);
-					}
-				});
+	parallelForAll(hashes.size(), threads,
+				   [&](std::size_t i) { buckets.items[counts[i / kParallelBlock][bucketOf(i)]++] = static_cast<uint32_t>(i); });
 	return buckets;
 }
 

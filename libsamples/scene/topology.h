@@ -3,6 +3,8 @@
 // count.
 #pragma once
 
+#include "core/lists.h"
+
 #include <glm/vec3.hpp>
 
 #include <algorithm>
@@ -104,25 +106,14 @@ public:
 	{
 		for (std::size_t vertex = first; vertex < last; ++vertex)
 		{
-			const std::span<const HalfEdge> sides = of(vertex);
-			for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end)
-			{
-				while (end < sides.size() && sides[end].to == sides[begin].to)
-				{
-					++end;
-				}
-				use(sides.subspan(begin, end - begin));
-			}
+			const std::size_t begin = vertex == 0 ? 0 : m_ends[vertex - 1];
+			const std::span<const HalfEdge> sides = std::span(m_sides).subspan(begin, m_ends[vertex] - begin);
+			eachRun(
+				sides, [](const HalfEdge& a, const HalfEdge& b) { return a.to == b.to; }, use);
 		}
 	}
 
 private:
-	std::span<const HalfEdge> of(std::size_t vertex) const
-	{
-		const std::size_t begin = vertex == 0 ? 0 : m_ends[vertex - 1];
-		return std::span(m_sides).subspan(begin, m_ends[vertex] - begin);
-	}
-
 	std::vector<HalfEdge> m_sides; // sorted by their lower vertex
 	std::vector<uint32_t> m_ends;  // per vertex: end of its sides
 };
@@ -130,14 +121,11 @@ private:
 // use(sides) for each part (parts[triangle]) of an edge's sides; triangles of a part are consecutive.
 template <class Use> void eachPart(std::span<const HalfEdge> edge, std::span<const uint32_t> parts, const Use& use)
 {
-	for (std::size_t begin = 0, end = 0; begin < edge.size(); begin = end)
+	const auto same = [&parts](const HalfEdge& a, const HalfEdge& b)
 	{
-		while (end < edge.size() && parts[edge[end].triangle()] == parts[edge[begin].triangle()])
-		{
-			++end;
-		}
-		use(edge.subspan(begin, end - begin));
-	}
+		return parts[a.triangle()] == parts[b.triangle()];
+	};
+	eachRun(edge, same, use);
 }
 
 // Number of defective edges, and the lowest triangle at one.

@@ -36,7 +36,7 @@ struct Directions
 };
 
 class Vicinity;
-class CameraMemo;
+struct CameraMemo;
 
 // Tracer::error() for a level with these bounds.
 double errorOfRays(const Bounds& bounds);

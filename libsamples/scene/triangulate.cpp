@@ -2,6 +2,7 @@
 // This work is based on:
 //   Gary H. Meisters: Polygons Have Ears. The American Mathematical Monthly 82 (6), 1975.
 // Cuts the next ear in order, whatever its shape, because long triangles do not matter for rays.
+#include "core/lists.h"
 #include "scene/cut_faces.h"
 
 #include <glm/geometric.hpp>
@@ -227,20 +228,16 @@ void FaceCutter::add(std::span<const uint32_t> corners, const FileMesh& mesh)
 
 void FaceCutter::addPolygon(std::span<const uint32_t> corners, const FileMesh& mesh)
 {
-	m_corners.clear();
-	for (const uint32_t corner : corners)
-	{
-		m_corners.push_back(mesh.positions[corner]);
-	}
-	const auto bad = std::find_if(m_corners.begin(), m_corners.end(), [](glm::dvec3 p) { return !std::isfinite(p.x + p.y + p.z); });
-	if (bad != m_corners.end())
+	const std::vector<glm::dvec3> points = mapped(corners, [&mesh](uint32_t corner) { return mesh.positions[corner]; });
+	const auto bad = std::find_if(points.begin(), points.end(), [](glm::dvec3 p) { return !std::isfinite(p.x + p.y + p.z); });
+	if (bad != points.end())
 	{
 		// The whole polygon is dropped and counted as one triangle with that vertex.
-		m_triangles.emplace_back(corners[static_cast<std::size_t>(bad - m_corners.begin())]);
+		m_triangles.emplace_back(corners[static_cast<std::size_t>(bad - points.begin())]);
 		return;
 	}
 	const std::size_t first = m_triangles.size();
-	if (!triangulate(m_corners, m_triangles))
+	if (!triangulate(points, m_triangles))
 	{
 		bad_polygons.add("mesh '" + mesh.name + "', triangle " + std::to_string(first));
 	}

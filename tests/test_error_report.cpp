@@ -190,24 +190,24 @@ TEST_CASE("error report: patterns are made once for all levels, volumes and bake
 {
 	const std::vector<Candidate> grid = candidateGrid(GridSize::quick);
 	std::set<std::string> made;
-	const CandidateCosts one(grid, {"one", 1000, 20000, 3}, made);
-	const CandidateCosts other(grid, {"other", 1000, 20000, 3}, made);
-	const CandidateCosts again(grid, {"one", 1000, 20000, 3}, made);
+	const std::vector<double> one = candidateSeconds(grid, {"one", 1000, 20000, 3}, made);
+	const std::vector<double> other = candidateSeconds(grid, {"other", 1000, 20000, 3}, made);
+	const std::vector<double> again = candidateSeconds(grid, {"one", 1000, 20000, 3}, made);
 	int tiles = 0;
 	int of_level = 0;
 	for (std::size_t i = 0; i < grid.size(); ++i)
 	{
 		const bool is_tile = grid[i].kind == CandidateKind::screen && grid[i].source == SampleSource::tile;
 		const bool is_split = grid[i].method() == "bake" && grid[i].bake_error > 0.0;
-		CHECK(again.seconds(i) <= one.seconds(i));
+		CHECK(again[i] <= one[i]);
 		CHECK((sharedBy(grid[i], "one") == sharedBy(grid[i], "other")) ==
 			  (grid[i].kind == CandidateKind::screen && grid[i].source != SampleSource::own));
 		if (is_split || (grid[i].kind == CandidateKind::asset && grid[i].method() != "bake"))
 		{
-			CHECK(other.seconds(i) == one.seconds(i));
-			of_level += again.seconds(i) < one.seconds(i) ? 1 : 0;
+			CHECK(other[i] == one[i]);
+			of_level += again[i] < one[i] ? 1 : 0;
 		}
-		tiles += is_tile && other.seconds(i) < one.seconds(i) ? 1 : 0;
+		tiles += is_tile && other[i] < one[i] ? 1 : 0;
 	}
 	CHECK(tiles >= 4);
 	CHECK(of_level >= 3);
@@ -558,7 +558,7 @@ TEST_CASE("error report: names of candidates are unique, and the smaller grid is
 TEST_CASE("error report: more rays err less, and the reference says how far it may be off", "[report]")
 {
 	LevelBench level(boxOnFloor(), 1.0, {});
-	ViewBench view(level, level.level().cameras.front(), {32, 18, 512, 1}, {});
+	ViewBench view(level, level.level.cameras.front(), {32, 18, 512, 1}, {});
 	MeasureSettings settings;
 	settings.device = Device::cpu;
 	settings.repetitions = 2;
@@ -577,7 +577,7 @@ TEST_CASE("error report: more rays err less, and the reference says how far it m
 TEST_CASE("error report: a method's definition is what it draws without noise, and a factor can only help", "[report]")
 {
 	LevelBench level(boxOnFloor(), 1.0, {});
-	ViewBench view(level, level.level().cameras.front(), {32, 18, 256, 1}, {});
+	ViewBench view(level, level.level.cameras.front(), {32, 18, 256, 1}, {});
 	MeasureSettings settings;
 	settings.device = Device::cpu;
 	settings.repetitions = 1;
@@ -594,7 +594,7 @@ TEST_CASE("error report: a method's definition is what it draws without noise, a
 TEST_CASE("error report: volumes of a level are measured as its other methods are", "[report]")
 {
 	LevelBench level(boxOnFloor(), 1.0, {});
-	ViewBench view(level, level.level().cameras.front(), {32, 18, 512, 1}, {});
+	ViewBench view(level, level.level.cameras.front(), {32, 18, 512, 1}, {});
 	MeasureSettings settings;
 	settings.device = Device::cpu;
 	settings.repetitions = 1;
@@ -613,11 +613,11 @@ TEST_CASE("error report: volumes of a level are measured as its other methods ar
 TEST_CASE("error report: hashes differ where pictures may, and nowhere else", "[report]")
 {
 	LevelBench level(boxOnFloor(), 1.0, {});
-	ViewBench view(level, level.level().cameras.front(), {16, 9, 64, 1}, {});
-	ViewBench same(level, level.level().cameras.front(), {16, 9, 64, 1}, {});
-	ViewBench larger(level, level.level().cameras.front(), {32, 9, 64, 1}, {});
+	ViewBench view(level, level.level.cameras.front(), {16, 9, 64, 1}, {});
+	ViewBench same(level, level.level.cameras.front(), {16, 9, 64, 1}, {});
+	ViewBench larger(level, level.level.cameras.front(), {32, 9, 64, 1}, {});
 	LevelBench wider(boxOnFloor(), 2.0, {});
-	ViewBench further(wider, level.level().cameras.front(), {16, 9, 64, 1}, {});
+	ViewBench further(wider, level.level.cameras.front(), {16, 9, 64, 1}, {});
 	MeasureSettings settings;
 	MeasureSettings longer;
 	longer.repetitions = 9;
@@ -636,7 +636,7 @@ TEST_CASE("error report: hashes differ where pictures may, and nowhere else", "[
 TEST_CASE("error report: bakes and volumes say their bytes, and splitting triangles brings a bake nearer to rays", "[report]")
 {
 	LevelBench bench(boxOnFloor(), 0.5, {});
-	ViewBench view(bench, bench.level().cameras.front(), {64, 36, 64, 1}, {});
+	ViewBench view(bench, bench.level.cameras.front(), {64, 36, 64, 1}, {});
 	MeasureSettings how;
 	how.device = Device::cpu;
 	how.repetitions = 1;
@@ -645,7 +645,7 @@ TEST_CASE("error report: bakes and volumes say their bytes, and splitting triang
 	bake.asset = assetNamed("bake");
 	CHECK(bake.name() == "bake");
 	const Measurement coarse = view.measure(bake, how);
-	CHECK(coarse.bytes == 4 * bench.level().positions.size());
+	CHECK(coarse.bytes == 4 * bench.level.positions.size());
 	CHECK(coarse.total.median_s == 0.0);
 	bake.bake_error = 0.05;
 	CHECK(bake.name() == "bake 0.05");

@@ -115,6 +115,32 @@ void checkRules(const CLI::App& app, const std::string& name, const OptionRules&
 	}
 }
 
+// No two of `written` are one file, and none is a file of `read`, by whatever name. Throws Error (usage) that names both.
+void checkDistinct(const std::vector<std::string>& written, const std::vector<std::string>& read)
+{
+	if (written.empty())
+	{
+		return;
+	}
+	std::unordered_map<std::string, std::string> seen; // name by identity
+	for (const std::string& path : read)
+	{
+		if (!path.starts_with(kBuiltinPrefix))
+		{
+			seen.try_emplace(fileIdentity(path), path);
+		}
+	}
+	for (const std::string& path : written)
+	{
+		const auto [other, is_new] = seen.try_emplace(fileIdentity(path), path);
+		if (!is_new)
+		{
+			const std::string found = other->second == path ? "named twice" : "found the same file as " + other->second;
+			refuse(path + ": " + found + ", expected another file for every input and output");
+		}
+	}
+}
+
 } // namespace
 
 Facts verbFacts(std::string_view verb)
@@ -176,22 +202,6 @@ void addOptions(CLI::App& app, const std::vector<OptionRow>& rows)
 bool isGiven(const CLI::App& app, const std::string& name)
 {
 	return app.get_option(name)->count() > 0;
-}
-
-void refuseGiven(const CLI::App& app, std::span<const std::string_view> names, const std::string& message)
-{
-	for (const std::string_view name : names)
-	{
-		if (isGiven(app, std::string(name)))
-		{
-			refuse(std::string(name) + ": found " + message);
-		}
-	}
-}
-
-void refuseGiven(const CLI::App& app, std::initializer_list<std::string_view> names, const std::string& message)
-{
-	refuseGiven(app, std::span(names.begin(), names.size()), message);
 }
 
 OptionValue takesFlag(bool& value, bool given)
@@ -513,31 +523,6 @@ void checkRead(const Outputs& outputs, const std::vector<std::string>& read)
 	if (!outputs.depfile.empty())
 	{
 		depfileOf(outputs, read); // refuses names
-	}
-}
-
-void checkDistinct(const std::vector<std::string>& written, const std::vector<std::string>& read)
-{
-	if (written.empty())
-	{
-		return;
-	}
-	std::unordered_map<std::string, std::string> seen; // name by identity
-	for (const std::string& path : read)
-	{
-		if (!path.starts_with(kBuiltinPrefix))
-		{
-			seen.try_emplace(fileIdentity(path), path);
-		}
-	}
-	for (const std::string& path : written)
-	{
-		const auto [other, is_new] = seen.try_emplace(fileIdentity(path), path);
-		if (!is_new)
-		{
-			const std::string found = other->second == path ? "named twice" : "found the same file as " + other->second;
-			refuse(path + ": " + found + ", expected another file for every input and output");
-		}
 	}
 }
 

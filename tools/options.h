@@ -124,8 +124,17 @@ void addOptions(CLI::App& app, const std::vector<OptionRow>& rows);
 bool isGiven(const CLI::App& app, const std::string& name);
 
 // Throws Error (usage) with "found MESSAGE" for the first of these options that is given.
-void refuseGiven(const CLI::App& app, std::span<const std::string_view> names, const std::string& message);
-void refuseGiven(const CLI::App& app, std::initializer_list<std::string_view> names, const std::string& message);
+template <class Names = std::initializer_list<std::string_view>>
+void refuseGiven(const CLI::App& app, const Names& names, const std::string& message)
+{
+	for (const std::string_view name : names)
+	{
+		if (isGiven(app, std::string(name)))
+		{
+			refuse(std::string(name) + ": found " + message);
+		}
+	}
+}
 
 // Values of rows. What they store into must outlive parsing. A variable may be optional: set where the option is given.
 OptionValue takesFlag(bool& value, bool given = true);
@@ -243,9 +252,6 @@ bool isStdoutFree(const Outputs& outputs);
 // Once all files read are known, a level's buffers included: refuses outputs among them, and names as above.
 void checkRead(const Outputs& outputs, const std::vector<std::string>& read);
 
-// No two of `written` are one file, and none is a file of `read`, by whatever name. Throws Error (usage) that names both.
-void checkDistinct(const std::vector<std::string>& written, const std::vector<std::string>& read);
-
 // The outputs with each file replaced by those that it stands for.
 Outputs expanded(Outputs outputs, const std::function<std::vector<std::string>(const std::string& file)>& filesOf);
 
@@ -268,17 +274,11 @@ void addSide(OutputSet& files, const Outputs& outputs, const std::string& facts,
 void writeOutputs(const Outputs& outputs, const std::function<std::string(const std::string& path)>& bytesOf,
 				  const std::string& facts, const std::vector<std::string>& read, const std::string& lines = {});
 
-// The verb that was parsed below `app`: of "report", say, "error".
-const CLI::App& parsedVerb(const CLI::App& app);
-
 // The verb's words and arguments in one order, without outputs, threads, progress, cache and share: what identifies a command.
 std::vector<std::string> commandWords(const CLI::App& verb);
 
 // The identity of results in a store (core/work_units.h): the version, then the command.
 std::vector<std::string> identityOf(std::vector<std::string> command);
-
-// Runs a parsed verb, as a whole or as a share, and keeps results with --cache. Throws what the verb throws.
-void runVerb(const Verb& verb, VerbProgress& progress);
 
 // A line on standard error.
 void warn(const std::string& message);

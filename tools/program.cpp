@@ -115,6 +115,17 @@ std::string verbsOf(const CLI::App& app)
 	const std::vector<std::string> names = mapped(verbs, [](const CLI::App* verb) { return verb->get_name(); });
 	return names.empty() ? "" : spokenList(std::vector<std::string_view>(names.begin(), names.end()));
 }
+// The verb that was parsed below `app`: of "report", say, "error".
+const CLI::App& parsedVerb(const CLI::App& app)
+{
+	const CLI::App* verb = &app;
+	while (!verb->get_subcommands().empty())
+	{
+		verb = verb->get_subcommands().front();
+	}
+	return *verb;
+}
+
 // CLI11's wording, with what to do about it.
 std::string misuseText(const CLI::App& program, const CLI::ParseError& error)
 {
@@ -174,6 +185,37 @@ std::string versionText()
 	}
 	return text + "\ncommit: " + kCommit + "\n";
 }
+// Runs a parsed verb, as a whole or as a share, and keeps results with --cache. Throws what the verb throws.
+void runVerb(const Verb& verb, VerbProgress& progress)
+{
+	const CLI::App& app = parsedVerb(*verb.app);
+	const auto given = [&app](const char* name)
+	{
+		const CLI::Option* const option = app.get_option_no_throw(name);
+		return option != nullptr && option->count() > 0 ? option->results().front() : std::string();
+	};
+	const std::string cache = given("--cache");
+	const std::string share = given("--share");
+	if (cache.empty())
+	{
+		if (!share.empty())
+		{
+			refuse("--share: found without --cache, expected --cache DIR, where the share's results are kept");
+		}
+		verb.run(progress);
+		return;
+	}
+	WorkUnits units(cache, identityOf(commandWords(app)), share.empty() ? std::nullopt : shareOf(share));
+	progress.divide(units);
+	verb.run(progress);
+	units.finish();
+	if (const std::string remark = units.store().remark(); !remark.empty())
+	{
+		std::fprintf(stderr, "nook: cache: %s\n", oneLine(remark).c_str());
+	}
+	std::fprintf(stderr, "nook: %zu results made, %zu from the cache\n", units.store().kept() - 1, units.store().found());
+}
+
 void run(const std::vector<std::string>& command, VerbProgress& progress)
 {
 	CLI::App nook(NOOK_DESCRIPTION);
@@ -278,16 +320,6 @@ std::vector<Verb> addMeasuredReports(CLI::App& report)
 			verbOf<kHasReports>(report, "times", "reports", [](auto& app) { return addReportTimes(app); })};
 }
 
-const CLI::App& parsedVerb(const CLI::App& app)
-{
-	const CLI::App* verb = &app;
-	while (!verb->get_subcommands().empty())
-	{
-		verb = verb->get_subcommands().front();
-	}
-	return *verb;
-}
-
 std::vector<std::string> commandWords(const CLI::App& verb)
 {
 	std::vector<std::string> words{verb.get_name()}; // the library parses verbs by themselves, which then have no parent
@@ -312,36 +344,6 @@ std::vector<std::string> identityOf(std::vector<std::string> command)
 {
 	command.insert(command.begin(), NOOK_VERSION);
 	return command;
-}
-
-void runVerb(const Verb& verb, VerbProgress& progress)
-{
-	const CLI::App& app = parsedVerb(*verb.app);
-	const auto given = [&app](const char* name)
-	{
-		const CLI::Option* const option = app.get_option_no_throw(name);
-		return option != nullptr && option->count() > 0 ? option->results().front() : std::string();
-	};
-	const std::string cache = given("--cache");
-	const std::string share = given("--share");
-	if (cache.empty())
-	{
-		if (!share.empty())
-		{
-			refuse("--share: found without --cache, expected --cache DIR, where the share's results are kept");
-		}
-		verb.run(progress);
-		return;
-	}
-	WorkUnits units(cache, identityOf(commandWords(app)), share.empty() ? std::nullopt : shareOf(share));
-	progress.divide(units);
-	verb.run(progress);
-	units.finish();
-	if (const std::string remark = units.store().remark(); !remark.empty())
-	{
-		std::fprintf(stderr, "nook: cache: %s\n", oneLine(remark).c_str());
-	}
-	std::fprintf(stderr, "nook: %zu results made, %zu from the cache\n", units.store().kept() - 1, units.store().found());
 }
 
 } // namespace nook

@@ -99,28 +99,6 @@ void takeCamera(const std::string& name, const std::string& text, CameraOptions&
 	}
 }
 
-OptionRow cameraRow(CameraOptions& options)
-{
-	return {"--camera",
-			takesParsed("NAME|auto:K",
-						[&options](const std::string& name, const std::string& text) { takeCamera(name, text, options); }),
-			"A camera of the level by name (default: its first, or auto:1 where it has none), or auto:K: the K most informative "
-			"views, the same ones each time; for K > 1 the names of outputs get -1, -2, ... before their ending"};
-}
-
-OptionRow sizeRow(CameraOptions& options, const std::string& standard)
-{
-	return {"--size",
-			takesParsed("WxH",
-						[&options](const std::string& name, const std::string& text)
-						{
-							const glm::ivec2 size = sizeOf(name, text);
-							options.width_px = size.x;
-							options.height_px = size.y;
-						}),
-			"Width and height of the picture in pixels (default " + standard + ")"};
-}
-
 } // namespace
 
 glm::dvec3 positionOf(const std::string& option, const std::string& text)
@@ -197,14 +175,26 @@ void addLevelOptions(CLI::App& app, LevelOptions& options)
 	addLoadOptions(app, options.load);
 }
 
-void addCameraChoice(CLI::App& app, CameraOptions& options)
+OptionRow cameraRow(CameraOptions& options)
 {
-	addOptions(app, {cameraRow(options)});
+	return {"--camera",
+			takesParsed("NAME|auto:K",
+						[&options](const std::string& name, const std::string& text) { takeCamera(name, text, options); }),
+			"A camera of the level by name (default: its first, or auto:1 where it has none), or auto:K: the K most informative "
+			"views, the same ones each time; for K > 1 the names of outputs get -1, -2, ... before their ending"};
 }
 
-void addPictureSize(CLI::App& app, CameraOptions& options, const std::string& standard)
+OptionRow sizeRow(CameraOptions& options, const std::string& standard)
 {
-	addOptions(app, {sizeRow(options, standard)});
+	return {"--size",
+			takesParsed("WxH",
+						[&options](const std::string& name, const std::string& text)
+						{
+							const glm::ivec2 size = sizeOf(name, text);
+							options.width_px = size.x;
+							options.height_px = size.y;
+						}),
+			"Width and height of the picture in pixels (default " + standard + ")"};
 }
 
 void addCameraOptions(CLI::App& app, CameraOptions& options)
@@ -228,7 +218,7 @@ void addCameraOptions(CLI::App& app, CameraOptions& options)
 				{"--world-to-camera", takesMatrix(options.camera_from_world),
 				 "Where the camera stands, as a rotation and translation: 16 numbers, column by column; it looks down its -z",
 				 excludes("--camera or --eye")},
-				sizeRow(options, "1280x720"),
+				sizeRow(options),
 				{"--allow-inside", takesFlag(options.allow_inside),
 				 "Accept a camera inside something solid, for levels whose faces are turned round"}});
 }

@@ -46,12 +46,6 @@ std::string pathOf(const CatalogueOptions& options, const std::string& below)
 	return (nativePath(options.folder) / below).generic_string(); // the same words on every system
 }
 
-// Neither the statement nor the log is one of the catalogue's files.
-void checkPlaces(const CatalogueOptions& options, const std::vector<CatalogueEntry>& entries)
-{
-	checkNames(options.outputs, mapped(entries, [&options](const CatalogueEntry& entry) { return pathOf(options, entry.path); }));
-}
-
 void makeFolders(const CatalogueOptions& options, const std::vector<CatalogueEntry>& entries, NewFolders& folders)
 {
 	for (const CatalogueEntry& entry : entries)
@@ -85,7 +79,8 @@ std::vector<std::string> differences(const CatalogueOptions& options, const std:
 void run(CatalogueOptions& options, VerbProgress& progress)
 {
 	const std::vector<CatalogueEntry> entries = entriesOf(options);
-	checkPlaces(options, entries);
+	// Neither the statement nor the log is one of the catalogue's files.
+	checkNames(options.outputs, mapped(entries, [&options](const CatalogueEntry& entry) { return pathOf(options, entry.path); }));
 	const RunSettings settings = progress.start("catalogue", options.outputs.threads, options.outputs.progress);
 	NewFolders folders;
 	if (!options.check && !options.outputs.share)

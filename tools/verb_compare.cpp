@@ -120,12 +120,6 @@ std::string shortText(double value)
 	return roundedText(value, 5);
 }
 
-std::string placeOf(const WorstPixel& worst)
-{
-	return "at pixel " + std::to_string(worst.x) + "," + std::to_string(worst.y) + ": " + shortText(worst.test) + " for " +
-		   shortText(worst.reference);
-}
-
 std::string nameOfFile(const std::string& path)
 {
 	return nativePath(path).filename().string();
@@ -151,7 +145,9 @@ std::string table(const VisibilityImage& test, const VisibilityImage& reference,
 	row("mae", shortText(c.mae), "mean of |test - reference|");
 	row("mean error", shortText(c.mean_error), "mean of test - reference: negative is too dark");
 	row("p95", shortText(c.p95), "95 % of the pixels are no further off");
-	row("max", shortText(c.max), placeOf(c.worst));
+	row("max", shortText(c.max),
+		"at pixel " + std::to_string(c.worst.x) + "," + std::to_string(c.worst.y) + ": " + shortText(c.worst.test) + " for " +
+			shortText(c.worst.reference));
 	row("ssim", c.ssim ? shortText(*c.ssim) : "-",
 		c.ssim ? "structural similarity, 1 for equal images" : "no 11 x 11 window lies inside and counts");
 	row("flip", shortText(c.flip),
@@ -164,24 +160,19 @@ std::string table(const VisibilityImage& test, const VisibilityImage& reference,
 	return lines;
 }
 
-struct Verdict
-{
-	bool exceeded = false;
-	double found = 0.0;
-};
-
-Verdict judged(const CompareOptions& options, const Comparison& comparison)
+// The error that --max-error is about; 0 without it.
+double judged(const CompareOptions& options, const Comparison& comparison)
 {
 	if (!options.max_error)
 	{
-		return {};
+		return 0.0;
 	}
 	const std::optional<double> error = errorBy(comparison, options.metric);
 	if (!error)
 	{
 		refuseInput(options.test + ": size", "no window of 11x11 pixels that counts", "one for --metric ssim");
 	}
-	return {*error > *options.max_error, *error};
+	return *error;
 }
 
 // Names and size of the two images, of visibility or of bent normals.
@@ -204,7 +195,7 @@ Facts headFacts(const CompareOptions& options, const Picture& test, const Pictur
 }
 
 std::string summaryOf(const CompareOptions& options, const VisibilityImage& test, const VisibilityImage& reference,
-					  const Comparison& c, const std::optional<double>& uncertainty, const Verdict& verdict)
+					  const Comparison& c, const std::optional<double>& uncertainty, double found)
 {
 	Facts facts = headFacts(options, test, reference, c.pixels);
 	const std::vector<Measure> errors{
@@ -228,9 +219,9 @@ std::string summaryOf(const CompareOptions& options, const VisibilityImage& test
 	if (options.max_error)
 	{
 		facts.text("metric", nameOf(options.metric));
-		facts.number("found", verdict.found);
+		facts.number("found", found);
 		facts.number("allowed", *options.max_error);
-		facts.text("verdict", verdict.exceeded ? "exceeded" : "within");
+		facts.text("verdict", found > *options.max_error ? "exceeded" : "within");
 	}
 	return facts.json();
 }
@@ -305,19 +296,19 @@ void run(CompareOptions& options, VerbProgress& progress)
 	options.settings.counted = counted;
 	const Comparison comparison = compareImages(test.plane(), reference.plane(), options.settings, settings);
 	const std::optional<double> uncertainty = ownUncertainty(reference, counted);
-	const Verdict verdict = judged(options, comparison);
+	const double found = judged(options, comparison);
 	OutputSet files;
 	if (!options.diff.empty())
 	{
 		files.add(options.diff, differenceOf(options, test, reference));
 	}
-	addSide(files, options.outputs, summaryOf(options, test, reference, comparison, uncertainty, verdict), {},
+	addSide(files, options.outputs, summaryOf(options, test, reference, comparison, uncertainty, found), {},
 			table(test, reference, comparison, uncertainty, options.settings));
 	files.commit();
-	if (verdict.exceeded)
+	if (options.max_error && found > *options.max_error)
 	{
 		throw Error(ExitCode::difference, options.test + ": " + std::string(nameOf(options.metric)) + ": found " +
-											  doubleText(verdict.found) + ", expected at most " + doubleText(*options.max_error));
+											  doubleText(found) + ", expected at most " + doubleText(*options.max_error));
 	}
 }
 

@@ -381,10 +381,7 @@ std::string addMethod(EmitOptions& options, ShadeMethod one, const std::string* 
 		base = readSamples(*pattern, count, settings.shade, method);
 		if (settings.shade.volume.paired && takesFeature(rowOf(one), featureOf("--paired")))
 		{
-			for (Pattern& variant : method.variants) // opposite samples beside one another
-			{
-				variant = pairedPattern(variant);
-			}
+			method.variants = mapped(method.variants, pairedPattern); // opposite samples beside one another
 		}
 	}
 	settings.methods.push_back(std::move(method));

@@ -4,7 +4,6 @@
 #include "scene_options.h"
 
 #include "core/decimal.h"
-#include "core/file.h"
 #include "core/lists.h"
 #include "core/text.h"
 #include "core/work_units.h"
@@ -52,8 +51,8 @@ void declare(CLI::App& app, FitOptions& options)
 					  "Reach of occlusion in metres, with linear falloff (default: by each level's size, 1.5 m at most)"}});
 	options.size.width_px = settings.width_px;
 	options.size.height_px = settings.height_px;
-	addPictureSize(app, options.size);
-	addOptions(app, {{"--views", takesWhole(settings.views, 1, 64), "Views of each level, the most informative ones (default 2)"},
+	addOptions(app, {sizeRow(options.size),
+					 {"--views", takesWhole(settings.views, 1, 64), "Views of each level, the most informative ones (default 2)"},
 					 {"--rays", takesWhole(settings.reference_rays, 1, 1 << 20), "Rays a pixel of the reference (default 256)"}});
 	addLoadOptions(app, options.load);
 	addOutputs(app, options.outputs, kFitFormats);
@@ -62,15 +61,8 @@ void declare(CLI::App& app, FitOptions& options)
 
 std::vector<MethodRecipe> startsOf(const FitOptions& options)
 {
-	std::vector<MethodRecipe> all;
-	if (options.start.empty())
-	{
-		all.assign(raysRecipes().begin(), raysRecipes().end());
-	}
-	else
-	{
-		all = readRecipes(options.start);
-	}
+	const std::vector<MethodRecipe> all =
+		options.start.empty() ? std::vector<MethodRecipe>(raysRecipes().begin(), raysRecipes().end()) : readRecipes(options.start);
 	if (options.methods.empty())
 	{
 		return all;

@@ -4,7 +4,6 @@
 
 #include "core/error.h"
 #include "core/system.h"
-#include "core/text.h"
 #include "format/tile_json.h"
 #include "methods/method_table.h"
 #include "methods/recipes.h"
@@ -135,11 +134,6 @@ void describe(TileFile& file, const InfoOptions& options, const RunSettings& set
 	}
 }
 
-bool isRecipes(const std::string& path)
-{
-	return nativePath(path).extension() == ".json" && holdsRecipes(readFile(path), path);
-}
-
 void describeRecipes(const std::string& path, Facts& facts)
 {
 	const std::vector<MethodRecipe> recipes = readRecipes(path);
@@ -225,12 +219,6 @@ void writeTables(const InfoOptions& options)
 	writeFile("-", text);
 }
 
-void describeSamples(const InfoOptions& options, const RunSettings& settings, Facts& facts)
-{
-	std::variant<PatternFile, TileFile> file = readInput(options.file, options.domain);
-	std::visit([&](auto& held) { describe(held, options, settings, facts); }, file);
-}
-
 // A file that is of no level: a pattern, a tile or recipes.
 void describePlain(const InfoOptions& options, const RunSettings& settings, Facts& facts)
 {
@@ -249,9 +237,10 @@ void describePlain(const InfoOptions& options, const RunSettings& settings, Fact
 		throw Error(ExitCode::invalid_input, options.file + ": found the ending '" + ending + "', expected " + kKinds);
 	}
 	refuseOther(options, kLoadOptions, "a level");
-	if (!isRecipes(options.file))
+	if (ending != ".json" || !holdsRecipes(readFile(options.file), options.file))
 	{
-		describeSamples(options, settings, facts);
+		std::variant<PatternFile, TileFile> file = readInput(options.file, options.domain);
+		std::visit([&](auto& held) { describe(held, options, settings, facts); }, file);
 		return;
 	}
 	refuseOther(options, kDomainOption, "a pattern without a domain");

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook pattern: recipe → one pattern, in the formats asked for.
-#include "call.h"
 #include "options.h"
 
 #include "core/file.h"

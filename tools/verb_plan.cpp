@@ -10,6 +10,7 @@
 #include "core/lists.h"
 #include "core/system.h"
 #include "core/text.h"
+#include "core/words.h"
 #include "farm/plan.h"
 #include "scene/builtin.h"
 #include "version.h"
@@ -382,11 +383,6 @@ Plan planOfLevels(const PlanOptions& options)
 				  {nativePath(list).filename().string(), NOOK_VERSION, options.program, "..", options.engine, {}, {}}, "plan");
 }
 
-std::string jobsText(std::size_t count)
-{
-	return std::to_string(count) + (count == 1 ? " job" : " jobs");
-}
-
 // "2 h 5 min", "3.2 s".
 std::string durationText(double seconds)
 {
@@ -406,12 +402,12 @@ double coreSeconds(const Plan& plan)
 
 std::string planText(const Plan& plan)
 {
-	std::string text =
-		plan.title + ": " + jobsText(plan.jobs.size()) + ", estimated " + durationText(coreSeconds(plan)) + " of one core\n";
+	std::string text = plan.title + ": " + counted(plan.jobs.size(), "job", "jobs") + ", estimated " +
+					   durationText(coreSeconds(plan)) + " of one core\n";
 	for (const PlanGroup& group : plan.groups)
 	{
 		const double overhead = overheadOf(group.needs, group.count);
-		text += "  " + group.name + ": " + jobsText(group.count) + " of " +
+		text += "  " + group.name + ": " + counted(group.count, "job", "jobs") + " of " +
 				(group.needs.known ? "about " : "unknown time, taken as ") + durationText(group.needs.seconds) + " with " +
 				std::to_string(group.needs.threads) + (group.needs.threads == 1 ? " thread" : " threads") + "; asks for " +
 				std::to_string(minutesToAsk(group.needs)) + " min and " + std::to_string(mebibytesToAsk(group.needs)) +
@@ -434,7 +430,7 @@ void addPlanFacts(Facts& summary, const Plan& plan)
 	std::vector<Facts> groups;
 	for (const PlanGroup& group : plan.groups)
 	{
-		Facts item;
+		Facts& item = groups.emplace_back();
 		item.text("name", group.name);
 		item.whole("jobs", group.count);
 		item.text("estimated", group.needs.known ? "yes" : "no");
@@ -444,7 +440,6 @@ void addPlanFacts(Facts& summary, const Plan& plan)
 		item.whole("threads", static_cast<std::size_t>(group.needs.threads));
 		item.whole("ask_minutes", static_cast<std::size_t>(minutesToAsk(group.needs)));
 		item.whole("ask_memory_mib", static_cast<std::size_t>(mebibytesToAsk(group.needs)));
-		groups.push_back(item);
 	}
 	summary.items("groups", groups);
 }
@@ -484,7 +479,7 @@ void tellStatus(const PlanOptions& options)
 	summary.whole("jobs", plan.jobs.size());
 	summary.whole("done", count);
 	summary.whole("not_done", plan.jobs.size() - count);
-	std::string text = plan.title + ": " + jobsText(plan.jobs.size()) + ", " + std::to_string(count) + " done, " +
+	std::string text = plan.title + ": " + counted(plan.jobs.size(), "job", "jobs") + ", " + std::to_string(count) + " done, " +
 					   std::to_string(plan.jobs.size() - count) + " not done\n";
 	const std::vector<std::string> names = mapped(indicesWhere(done.size(), [&](std::size_t i) { return done[i] == 0; }),
 												  [&](std::size_t i) { return plan.jobs[i].name; });

@@ -2,7 +2,6 @@
 // nook report: measurements → one page that a team chooses from.
 #include "options.h"
 
-#include "core/file.h"
 #include "study/noise_report.h"
 #include "version.h"
 
@@ -22,7 +21,6 @@ struct NoiseOptions
 void run(const NoiseOptions& options, VerbProgress& progress)
 {
 	static constexpr std::array<std::string_view, 1> kPages{".html"};
-	checkNoiseReportSettings(options.settings);
 	checkOutputs(options.outputs, kPages);
 	const RunSettings how = progress.start("report noise", options.outputs.threads, options.outputs.progress);
 	const NoiseReport report = measureNoise(options.settings, how);

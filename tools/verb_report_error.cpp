@@ -47,12 +47,12 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 	ErrorReportSettings& settings = options.settings;
 	MeasureSettings& measure = settings.measure;
 	addLoadOptions(app, settings.load);
-	addCameraChoice(app, options.camera);
-	addPictureSize(app, options.camera, "320x180");
 	const OptionRules not_quick = excludes("--quick");
 	addOptions(
 		app,
-		{{"--grid", takesChoice(namesOf<GridSize>(), settings.grid),
+		{cameraRow(options.camera),
+		 sizeRow(options.camera, "320x180"),
+		 {"--grid", takesChoice(namesOf<GridSize>(), settings.grid),
 		  "How much is tried: quick (84 candidates), normal (default), or full (every product of counts, samples, filters, "
 		  "resolutions, thickness and StatVO's tables)",
 		  not_quick},

@@ -35,12 +35,10 @@ void declareTimes(CLI::App& app, TimesOptions& options)
 {
 	TimesSettings& settings = options.settings;
 	settings.measure.repetitions = 9;
-	const auto take_level = [&settings](const std::string&, const std::string& level)
-	{
-		settings.levels.push_back(level);
-	};
 	addOptions(
-		app, {{"LEVEL", takesEach("LEVEL", take_level), "Levels (.gltf .glb .obj .fbx .ply .stl), or builtin:NAME", kRequired},
+		app, {{"LEVEL",
+			   takesEach("LEVEL", [&settings](const std::string&, const std::string& level) { settings.levels.push_back(level); }),
+			   "Levels (.gltf .glb .obj .fbx .ply .stl), or builtin:NAME", kRequired},
 			  {"--size", takesEach("WxH", settings.sizes, sizeOf),
 			   "Width and height of the pictures in pixels, may be repeated (default 1920x1080)"},
 			  {"--radius-px", takesEach("X", settings.radii_px, radiusOf),

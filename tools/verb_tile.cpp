@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook tile: a pattern → its variants for the pixels of a blur window.
-#include "call.h"
 #include "options.h"
 
 #include "core/system.h"

@@ -69,9 +69,9 @@ void declare(CLI::App& app, TuneOptions& options)
 				 "Leaves out what needs a larger file of volumes or bake of any level: 1MiB (default: none)"},
 				{"--radius", takesNumber(settings.radius_m, 1e-6, 1e9, "M"),
 				 "Reach of occlusion in metres, with linear falloff (default: by each level's size, 1.5 m at most)"}});
-	addPictureSize(app, options.size);
 	addOptions(app,
-			   {{"--views", takesWhole(settings.views, 1, 64), "Views of each level, the most informative ones (default 4)"},
+			   {sizeRow(options.size),
+				{"--views", takesWhole(settings.views, 1, 64), "Views of each level, the most informative ones (default 4)"},
 				{"--rays", takesWhole(settings.reference_rays, 1, 1 << 20), "Rays a pixel of the reference (default 256)"},
 				{"--repetitions", takesWhole(settings.repetitions, 1, 1000), "Drawings of what gets to the end (default 7)"},
 				glDeviceRow(settings.gl_device),

@@ -94,14 +94,6 @@ double flatOf(const std::string& option, const std::string& text)
 
 std::vector<OptionRow> occluderRows(OccluderSettings& occluders, VolumeSettings& settings)
 {
-	const auto take_extent = [&occluders](const std::string& name, const std::string& text)
-	{
-		takeExtent(name, text, occluders);
-	};
-	const auto take_detail = [&settings](const std::string& name, const std::string& text)
-	{
-		takeDetail(name, text, settings);
-	};
 	return {
 		{"--sides", takesChoice(kSides, occluders.sides),
 		 "Which sides of a polygon darken: the front of closed opaque surfaces and both of all others (auto, default), the front "
@@ -112,11 +104,12 @@ std::vector<OptionRow> occluderRows(OccluderSettings& occluders, VolumeSettings&
 		{"--flat", takesParsed("SHARE", occluders.flat, flatOf),
 		 "How far off their plane merged neighbours may lie, as a share of the distance, 1e-6 to 0.05 (default 1e-4; what is "
 		 "two-sided at most 5e-5)"},
-		{"--extent", takesParsed("X", take_extent),
+		{"--extent", takesParsed("X", [&](const std::string& name, const std::string& text) { takeExtent(name, text, occluders); }),
 		 "Cuts merged polygons in halves until they are at most this many times the distance long, 0.1 or more, or none (default "
 		 "2, or twice, four times … that where a quarter more polygons would not do): smaller ones fall off sideways, which is "
 		 "nearer to what rays give"},
-		{"--detail", takesParsed("SHARE", take_detail),
+		{"--detail",
+		 takesParsed("SHARE", [&](const std::string& name, const std::string& text) { takeDetail(name, text, settings); }),
 		 "Simplifies surfaces that darken on one side only, moving them by about this share at most of the distance, below 1; "
 		 "auto: as far as errors at sampled points grow by a twentieth at most (with --masks a quarter), auto:SHARE: by that share "
 		 "(default: not)"}};
@@ -208,23 +201,14 @@ void settle(VolumeOptions& options)
 	}
 }
 
-// Without them every share would do all of the work.
-void checkShared(const VolumeSettings& settings)
-{
-	const DropSettings& drop = settings.drop;
-	if (!drop.no_receiver && !drop.sides && !drop.inside && drop.below <= 0.0 && !settings.compensate)
-	{
-		refuse("--share: found with --no-drop and without --compensate, which leave nothing to share out, "
-			   "expected one run");
-	}
-}
-
 void run(VolumeOptions& options, VerbProgress& progress)
 {
 	settle(options);
-	if (options.outputs.share)
+	const DropSettings& drop = options.settings.drop;
+	const bool alone = !drop.no_receiver && !drop.sides && !drop.inside && drop.below <= 0.0 && !options.settings.compensate;
+	if (options.outputs.share && alone) // every share would do all of the work
 	{
-		checkShared(options.settings);
+		refuse("--share: found with --no-drop and without --compensate, which leave nothing to share out, expected one run");
 	}
 	options.settings.written_bytes = writtenBytes(options.file.layout);
 	checkOutputs(options.outputs, kVolumeFormats, {options.level.level});

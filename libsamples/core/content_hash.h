@@ -2,12 +2,14 @@
 // 128-bit content hash as text. Not cryptographic.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 namespace nook
 {
@@ -35,29 +37,22 @@ public:
 	// Includes the length, so that "ab", "c" differs from "a", "bc".
 	void add(std::string_view text)
 	{
-		add(static_cast<double>(text.size()));
+		add(text.size());
 		add(std::as_bytes(std::span(text.data(), text.size())));
 	}
 
-	void add(const std::string& text)
+	// Numbers as 64-bit floats.
+	template <class... Number>
+	requires(std::is_arithmetic_v<Number>&&...) void add(Number... values)
 	{
-		add(std::string_view(text));
-	}
-
-	void add(const char* text)
-	{
-		add(std::string_view(text));
-	}
-
-	void add(double value)
-	{
-		add(std::as_bytes(std::span(&value, 1)));
+		const std::array<double, sizeof...(values)> all{static_cast<double>(values)...};
+		add(std::as_bytes(std::span(all)));
 	}
 
 	// `Item` has no padding.
 	template <class Item> void items(std::span<const Item> list)
 	{
-		add(static_cast<double>(list.size()));
+		add(list.size());
 		add(std::as_bytes(list));
 	}
 

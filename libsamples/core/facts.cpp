@@ -19,6 +19,22 @@ std::string numberJson(double value)
 	return std::isfinite(value) ? doubleText(value) : "null";
 }
 
+// One per line in columns.
+std::string measureLines(const std::vector<Measure>& measures)
+{
+	std::size_t width = 0;
+	for (const Measure& measure : measures)
+	{
+		width = std::max(width, measure.name.size());
+	}
+	const auto lineOf = [width](const Measure& measure)
+	{
+		return "  " + measure.name + std::string(width - measure.name.size() + 2, ' ') +
+			   (std::isfinite(measure.value) ? roundedText(measure.value, 6) : "infinite") + "\n";
+	};
+	return joinedText(measures, "", lineOf);
+}
+
 } // namespace
 
 void Facts::add(std::string_view name, std::string json, std::string_view words, std::string shown)
@@ -93,21 +109,6 @@ std::string measuresJson(const std::vector<Measure>& measures)
 		return "\n\t\t" + jsonText(measure.name) + ": " + numberJson(measure.value);
 	};
 	return "{" + joinedText(measures, ",", textOf) + "\n\t}";
-}
-
-std::string measureLines(const std::vector<Measure>& measures)
-{
-	std::size_t width = 0;
-	for (const Measure& measure : measures)
-	{
-		width = std::max(width, measure.name.size());
-	}
-	const auto lineOf = [width](const Measure& measure)
-	{
-		return "  " + measure.name + std::string(width - measure.name.size() + 2, ' ') +
-			   (std::isfinite(measure.value) ? roundedText(measure.value, 6) : "infinite") + "\n";
-	};
-	return joinedText(measures, "", lineOf);
 }
 
 } // namespace nook

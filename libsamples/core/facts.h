@@ -59,8 +59,7 @@ private:
 	std::vector<Fact> m_facts;
 };
 
-// Measures as a JSON object, one per line; and for people, one per line in columns.
+// Measures as a JSON object, one per line.
 std::string measuresJson(const std::vector<Measure>& measures);
-std::string measureLines(const std::vector<Measure>& measures);
 
 } // namespace nook

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/file.h"
 
+#include "core/content_hash.h"
 #include "core/error.h"
 #include "core/lists.h"
 #include "core/system.h"
@@ -30,6 +31,16 @@ using File = std::unique_ptr<std::FILE, Closer>;
 [[noreturn]] void fail(const std::string& path, const char* doing, int reason)
 {
 	throw Error(ExitCode::file, path + ": cannot be " + doing + ": " + std::strerror(reason));
+}
+
+File opened(const std::string& path, const char* mode, const std::string& name, const char* doing)
+{
+	File file(openFile(path, mode));
+	if (file == nullptr)
+	{
+		fail(name, doing, errno);
+	}
+	return file;
 }
 
 void writeAll(std::FILE* file, const std::string& path, std::string_view bytes)
@@ -70,11 +81,7 @@ bool isDevice(const std::string& path)
 
 void writeDirectly(const std::string& path, const std::string& name, std::string_view bytes)
 {
-	File file(openFile(path, "wb"));
-	if (file == nullptr)
-	{
-		fail(name, "written", errno);
-	}
+	File file = opened(path, "wb", name, "written");
 	writeAll(file.get(), name, bytes);
 	if (std::fclose(file.release()) != 0)
 	{
@@ -216,11 +223,7 @@ void end(int signal)
 
 std::string readFile(const std::string& path)
 {
-	const File file(openFile(path, "rb"));
-	if (file == nullptr)
-	{
-		fail(path, "read", errno);
-	}
+	const File file = opened(path, "rb", path, "read");
 	std::string bytes;
 	std::error_code unknown; // unknown for a pipe, for example
 	const std::uintmax_t size = std::filesystem::file_size(nativePath(path), unknown);
@@ -251,6 +254,23 @@ std::string readFile(const std::string& path)
 		fail(path, "read", errno);
 	}
 	return bytes;
+}
+
+std::string hashOfFile(const std::string& path)
+{
+	const File file = opened(path, "rb", path, "read");
+	ContentHash hash;
+	std::vector<std::byte> block(std::size_t{1} << 20U);
+	for (std::size_t size = block.size(); size == block.size();)
+	{
+		size = std::fread(block.data(), 1, block.size(), file.get());
+		hash.add(std::span<const std::byte>(block.data(), size));
+	}
+	if (std::ferror(file.get()) != 0)
+	{
+		fail(path, "read", errno);
+	}
+	return hash.text();
 }
 
 void checkWritable(const std::string& path)

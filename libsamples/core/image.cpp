@@ -5,6 +5,7 @@
 #include "core/file.h"
 #include "core/image_codec.h"
 #include "core/isolate.h"
+#include "core/lists.h"
 #include "core/system.h"
 
 #include <algorithm>
@@ -70,15 +71,14 @@ std::string encoded(ImageToEncode image, const float* pixels, const Notes& notes
 
 std::size_t storedBytes(const std::vector<EncodedAlpha>& pictures)
 {
-	std::size_t bytes = 0;
-	for (const EncodedAlpha& picture : pictures)
+	const auto bytesOf = [](const EncodedAlpha& picture)
 	{
 		std::error_code failed;
 		const std::uintmax_t size =
 			picture.path.empty() ? picture.bytes.size() : std::filesystem::file_size(nativePath(picture.path), failed);
-		bytes += failed ? 0 : static_cast<std::size_t>(size);
-	}
-	return bytes;
+		return failed ? 0 : static_cast<std::size_t>(size);
+	};
+	return sumOver(pictures, bytesOf);
 }
 
 // First bytes of a file; empty if it cannot be read, which the decoder reports.
@@ -116,22 +116,14 @@ public:
 	// Requests those pictures that match `isFor` and are not yet decoded.
 	void askBy(const char* worker, const std::function<bool(const EncodedAlpha&)>& isFor)
 	{
-		std::vector<std::size_t> asked;
-		std::vector<const EncodedAlpha*> pictures;
-		for (std::size_t i = 0; i < m_pictures.size(); ++i)
-		{
-			if (!m_decoded[i].image && isFor(m_pictures[i]))
-			{
-				asked.push_back(i);
-				pictures.push_back(&m_pictures[i]);
-			}
-		}
+		const std::vector<std::size_t> asked =
+			indicesWhere(m_pictures.size(), [&](std::size_t i) { return !m_decoded[i].image && isFor(m_pictures[i]); });
 		if (asked.empty())
 		{
 			return;
 		}
 		const std::size_t before = m_texels;
-		m_name = pictures.front()->name;
+		m_name = m_pictures[asked.front()].name;
 		isolate(
 			ask(worker, kDecodeAlphas), m_name,
 			IsolationLimits{std::max(kAlphaMemory, 4 * m_max_texels) + m_stored,
@@ -139,10 +131,10 @@ public:
 			[&](ValueWriter& to)
 			{
 				to.value(m_max_texels);
-				to.value(pictures.size());
-				for (const EncodedAlpha* picture : pictures)
+				to.value(asked.size());
+				for (const std::size_t i : asked)
 				{
-					send(*picture, to);
+					send(m_pictures[i], to);
 				}
 			},
 			[&](ValueReader& from)

@@ -3,7 +3,6 @@
 #include "core/image_codec.h"
 
 #include "core/error.h"
-#include "core/file.h"
 #include "core/isolate.h"
 
 #include <OpenImageIO/filesystem.h>

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <system_error>
+#include <utility>
 
 namespace nook
 {
@@ -73,31 +74,14 @@ std::unique_ptr<ChildProcess> startWorker(const std::string& program)
 
 constexpr int kWaitFactor = 5; // a busy machine may leave a process a fifth of a processor
 
-// Idle workers kept for the next call, one per program. A call takes one out and puts it back, so calls never share a worker.
-class KeptWorkers
+// Exchanges the idle worker kept for the next call, one per program. A call takes it out and puts it back, so calls never share
+// one.
+std::unique_ptr<ChildProcess> exchangeKept(const std::string& program, std::unique_ptr<ChildProcess> worker)
 {
-public:
-	std::unique_ptr<ChildProcess> take(const std::string& program)
-	{
-		const std::lock_guard lock(m_mutex);
-		return std::move(m_workers[program]);
-	}
-
-	void put(const std::string& program, std::unique_ptr<ChildProcess> worker)
-	{
-		const std::lock_guard lock(m_mutex);
-		m_workers[program] = std::move(worker);
-	}
-
-private:
-	std::mutex m_mutex;
-	std::map<std::string, std::unique_ptr<ChildProcess>> m_workers;
-};
-
-KeptWorkers& keptWorkers()
-{
-	static KeptWorkers workers;
-	return workers;
+	static std::mutex mutex;
+	static std::map<std::string, std::unique_ptr<ChildProcess>> workers;
+	const std::lock_guard lock(mutex);
+	return std::exchange(workers[program], std::move(worker));
 }
 
 // Waits for a worker's answer and enforces its limits meanwhile.
@@ -139,7 +123,8 @@ void sendRequest(const ChildProcess& worker, const Isolated& what, const std::op
 {
 	ValueWriter request(worker.streams().to);
 	request.text(what.function);
-	request.value(limits ? RequestHead{true, limits->memory_bytes, limits->processor_s} : RequestHead{});
+	request.value(limits.has_value());
+	request.value(limits.value_or(IsolationLimits{}));
 	ask(request);
 	request.finish(ExitCode::ok, "");
 }
@@ -160,8 +145,8 @@ bool hasWorker(const char* program)
 {
 	try
 	{
-		std::unique_ptr<ChildProcess> kept = keptWorkers().take(program);
-		keptWorkers().put(program, kept != nullptr ? std::move(kept) : startWorker(program));
+		std::unique_ptr<ChildProcess> kept = exchangeKept(program, nullptr);
+		exchangeKept(program, kept != nullptr ? std::move(kept) : startWorker(program));
 		return true;
 	}
 	catch (const Error&)
@@ -173,7 +158,7 @@ bool hasWorker(const char* program)
 void isolate(const Isolated& what, const std::string& name, const std::optional<IsolationLimits>& limits,
 			 const std::function<void(ValueWriter&)>& ask, const std::function<void(ValueReader&)>& take)
 {
-	std::unique_ptr<ChildProcess> worker = what.keep ? keptWorkers().take(what.program) : nullptr;
+	std::unique_ptr<ChildProcess> worker = what.keep ? exchangeKept(what.program, nullptr) : nullptr;
 	for (bool again = worker != nullptr;; again = false)
 	{
 		if (worker == nullptr)
@@ -185,7 +170,7 @@ void isolate(const Isolated& what, const std::string& name, const std::optional<
 		{
 			if (what.keep && answer.isFinished())
 			{
-				keptWorkers().put(what.program, std::move(worker));
+				exchangeKept(what.program, std::move(worker));
 			}
 		};
 		try

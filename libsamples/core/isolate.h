@@ -54,15 +54,7 @@ struct WorkerFunction
 // Serves requests until the parent ends; returns main()'s exit code. If `prepare`, run first, fails, the worker cannot run here.
 int serveRequests(int argc, char** argv, std::span<const WorkerFunction> functions, const std::function<void()>& prepare = {});
 
-// Shared by both sides: request header and end-of-message codes.
-
-struct RequestHead
-{
-	bool limited = false;
-	std::size_t memory_bytes = 0; // in addition to the worker's size when the request arrives
-	int processor_s = 0;
-};
-
+// Shared by both sides: end-of-message codes.
 inline constexpr const char* kTooLarge = "contents that need far more memory than their size justifies";
 inline constexpr const char* kTooLong = "contents that never finish reading";
 inline constexpr const char* kBroken = "contents that crash their reader";

@@ -2,9 +2,12 @@
 // Parses JSON into checked values; every error is an Error (invalid_input) "path: element: found X, expected Y".
 #pragma once
 
+#include "core/lists.h"
+
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -29,7 +32,11 @@ struct JsonValue
 	JsonValue at(std::size_t index) const;
 	std::string nameOfField(std::string_view field) const;
 
-	std::size_t arraySize() const; // throws if it is not an array
+	std::size_t arraySize() const;                              // throws if it is not an array
+	template <class Read> auto elements(const Read& read) const // read(element) of each; throws if it is not an array
+	{
+		return listOf(arraySize(), [&](std::size_t i) { return std::invoke(read, at(i)); });
+	}
 	void requireObject() const;
 	void allowOnly(std::initializer_list<std::string_view> fields) const; // throws if it is not an object
 

@@ -4,7 +4,6 @@
 #include "core/image_codec.h"
 
 #include "core/error.h"
-#include "core/file.h"
 #include "core/isolate.h"
 
 #include <cstdio> // jpeglib.h needs it

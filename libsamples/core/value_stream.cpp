@@ -31,8 +31,9 @@ public:
 		ValueReader request(m_streams.from);
 		ValueWriter answer(m_streams.to);
 		const std::string name = request.text();
-		const auto head = request.value<RequestHead>();
-		const bool ours = limitThisProcess(head.limited, head.memory_bytes, head.processor_s);
+		const auto limited = request.value<bool>();
+		const auto limits = request.value<IsolationLimits>();
+		const bool ours = limitThisProcess(limited, limits.memory_bytes, limits.processor_s);
 		try
 		{
 			run(name, request, answer);

@@ -9,11 +9,7 @@
 #include "core/system.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <memory>
 #include <queue>
 #include <utility>
 #include <vector>
@@ -22,11 +18,6 @@ namespace nook
 {
 namespace
 {
-
-std::vector<double> costsOf(const WorkStage& stage)
-{
-	return listOf(stage.count, stage.cost);
-}
 
 // The most expensive first, so that no thread is left with one of them at the end.
 void computeAll(const WorkStage& stage, std::vector<std::size_t> units, std::span<const double> costs, const RunSettings& run,
@@ -57,14 +48,14 @@ std::string keyFrom(std::span<const std::string> identity, std::span<const std::
 	ContentHash key;
 	for (const std::span<const std::string> list : {identity, inputs, hashes})
 	{
-		key.add(static_cast<double>(list.size()));
+		key.add(list.size());
 		for (const std::string& word : list)
 		{
 			key.add(word);
 		}
 	}
 	key.add(what);
-	key.add(static_cast<double>(unit));
+	key.add(unit);
 	return key.text();
 }
 
@@ -99,8 +90,6 @@ std::string headOf(const std::string& key, std::string_view value)
 	sum.add(value);
 	return std::string(kValueMagic) + sum.text() + "\n";
 }
-
-constexpr std::size_t kBlock = std::size_t{1} << 20U;
 
 } // namespace
 
@@ -182,7 +171,7 @@ void WorkUnits::run(const WorkStage& stage, const RunSettings& run)
 {
 	const int call = ++m_calls[stage.name]; // a stage may run several times
 	const std::string name = stage.name + " " + std::to_string(call);
-	const std::vector<double> costs = costsOf(stage);
+	const std::vector<double> costs = listOf(stage.count, stage.cost);
 	std::vector<std::size_t> missing;
 	for (const std::size_t unit : ownUnits(stage, costs))
 	{
@@ -231,7 +220,7 @@ void runStage(const WorkStage& stage, const RunSettings& run)
 		run.units->run(stage, run);
 		return;
 	}
-	computeAll(stage, countingTo(stage.count), costsOf(stage), run);
+	computeAll(stage, countingTo(stage.count), listOf(stage.count, stage.cost), run);
 }
 
 void runOnce(const std::string& name, const std::function<void()>& compute, const Visitor& pass, const RunSettings& run)
@@ -369,28 +358,6 @@ void Store::once(const std::string& key, const std::function<bool()>& compute, c
 	{
 		keep(key, bytesOf(visitor));
 	}
-}
-
-std::string hashOfFile(const std::string& path)
-{
-	std::FILE* const file = openFile(path, "rb");
-	if (file == nullptr)
-	{
-		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(errno));
-	}
-	const std::unique_ptr<std::FILE, int (*)(std::FILE*)> closer(file, &std::fclose);
-	ContentHash hash;
-	std::vector<std::byte> block(kBlock);
-	for (std::size_t size = kBlock; size == kBlock;)
-	{
-		size = std::fread(block.data(), 1, kBlock, file);
-		hash.add(std::span<const std::byte>(block.data(), size));
-	}
-	if (std::ferror(file) != 0)
-	{
-		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(errno));
-	}
-	return hash.text();
 }
 
 } // namespace nook

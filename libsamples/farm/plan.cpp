@@ -120,11 +120,6 @@ public:
 	}
 
 private:
-	void addGroup(const std::string& name, std::size_t count, std::vector<std::size_t> after, const JobNeeds& needs)
-	{
-		m_plan.groups.push_back({name, m_plan.jobs.size(), count, std::move(after), needs});
-	}
-
 	// The files that a job reads: the command's, what others write for it, and the marks of jobs before it.
 	std::vector<std::string> inputsOf(const PlanCommand& command, const std::vector<std::size_t>& after) const
 	{
@@ -155,7 +150,8 @@ private:
 			const double shared_s = needs.seconds - needs.load_seconds;
 			needs.seconds = needs.load_seconds + shared_s / command.shares;
 			const std::vector<std::string> inputs = inputsOf(command, after);
-			addGroup(command.name + ".share", static_cast<std::size_t>(command.shares), after, needs);
+			m_plan.groups.push_back(
+				{command.name + ".share", m_plan.jobs.size(), static_cast<std::size_t>(command.shares), after, needs});
 			after = {m_plan.groups.size() - 1};
 			const std::string of = std::to_string(command.shares);
 			for (int share = 1; share <= command.shares; ++share)
@@ -174,7 +170,7 @@ private:
 		}
 		m_group[index] = m_plan.groups.size();
 		const std::vector<std::string> inputs = inputsOf(command, after);
-		addGroup(command.name, 1, after, needs);
+		m_plan.groups.push_back({command.name, m_plan.jobs.size(), 1, after, needs});
 		m_plan.jobs.push_back({command.name, words, command.outputs, inputs, command.identity, std::nullopt});
 	}
 
@@ -259,27 +255,26 @@ std::string planJson(const Plan& plan)
 {
 	Json root{{"schema", "nook.plan/2"}, {"version", plan.version}, {"title", plan.title},
 			  {"engine", plan.engine},   {"program", plan.program}, {"work", plan.work}};
-	root["groups"] = Json::array();
-	for (const PlanGroup& group : plan.groups)
+	const auto groupJson = [&](const PlanGroup& group)
 	{
-		Json after = mapped(group.after, [&](const std::size_t other) { return plan.groups[other].name; });
-		root["groups"].push_back({{"name", group.name},
-								  {"first", group.first + 1},
-								  {"jobs", group.count},
-								  {"after", after},
-								  {"threads", group.needs.threads},
-								  {"ask_minutes", minutesToAsk(group.needs)},
-								  {"ask_memory_mib", mebibytesToAsk(group.needs)}});
-	}
-	root["jobs"] = Json::array();
-	for (const PlanJob& job : plan.jobs)
+		return Json{{"name", group.name},
+					{"first", group.first + 1},
+					{"jobs", group.count},
+					{"after", mapped(group.after, [&](const std::size_t other) { return plan.groups[other].name; })},
+					{"threads", group.needs.threads},
+					{"ask_minutes", minutesToAsk(group.needs)},
+					{"ask_memory_mib", mebibytesToAsk(group.needs)}};
+	};
+	const auto jobJson = [](const PlanJob& job)
 	{
-		root["jobs"].push_back({{"name", job.name},
-								{"command", job.words},
-								{"outputs", job.outputs},
-								{"identity", job.identity},
-								{"share", job.share ? Json{job.share->number, job.share->of} : Json()}});
-	}
+		return Json{{"name", job.name},
+					{"command", job.words},
+					{"outputs", job.outputs},
+					{"identity", job.identity},
+					{"share", job.share ? Json{job.share->number, job.share->of} : Json()}};
+	};
+	root["groups"] = mapped(plan.groups, groupJson);
+	root["jobs"] = mapped(plan.jobs, jobJson);
 	return jsonFile(root);
 }
 
@@ -346,8 +341,7 @@ ListedCommand commandFromStep(const JsonValue& step, const Values& values)
 	step.allowOnly({"name", "command", "shares", "minutes", "memory_mib"});
 	ListedCommand command;
 	command.name = values.at("name") + "." + step.at("name").string();
-	const JsonValue words = step.at("command");
-	command.words = listOf(words.arraySize(), [&](std::size_t i) { return filled(words.at(i), values); });
+	command.words = step.at("command").elements([&](const JsonValue& word) { return filled(word, values); });
 	command.shares = optional(step, "shares", 1, kMaxPlanShares);
 	command.minutes = optional(step, "minutes", 0, kMaxMinutes);
 	command.mebibytes = optional(step, "memory_mib", 0, kMaxMebibytes);
@@ -496,14 +490,9 @@ Plan readPlan(const std::string& text, const std::string& path)
 	plan.version = root.at("version").string();
 	plan.title = root.at("title").string();
 	plan.work = root.at("work").string();
-	const JsonValue jobs = root.at("jobs");
-	for (std::size_t i = 0; i < jobs.arraySize(); ++i)
+	const auto jobFrom = [](const JsonValue& item)
 	{
-		const JsonValue item = jobs.at(i);
-		PlanJob job;
-		job.name = item.at("name").string();
-		job.outputs = item.texts("outputs");
-		job.identity = item.texts("identity");
+		PlanJob job{item.at("name").string(), {}, item.texts("outputs"), {}, item.texts("identity"), std::nullopt};
 		if (const JsonValue share = item.at("share"); !share.value->is_null())
 		{
 			if (share.arraySize() != 2)
@@ -513,8 +502,9 @@ Plan readPlan(const std::string& text, const std::string& path)
 			job.share = WorkShare{static_cast<int>(share.at(0).integer(1, kMaxPlanShares)),
 								  static_cast<int>(share.at(1).integer(1, kMaxPlanShares))};
 		}
-		plan.jobs.push_back(std::move(job));
-	}
+		return job;
+	};
+	plan.jobs = root.at("jobs").elements(jobFrom);
 	return plan;
 }
 
@@ -627,8 +617,7 @@ std::vector<ListedCommand> readLevelList(const std::string& text, const std::str
 	}
 	const JsonValue steps = root.at("steps");
 	const JsonValue levels = root.at("levels");
-	const std::vector<std::string> all =
-		listOf(steps.arraySize(), [&steps](std::size_t s) { return steps.at(s).at("name").string(); });
+	const std::vector<std::string> all = steps.elements([](const JsonValue& step) { return step.at("name").string(); });
 	std::vector<ListedCommand> commands;
 	for (std::size_t l = 0; l < levels.arraySize(); ++l)
 	{

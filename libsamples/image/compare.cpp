@@ -9,6 +9,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <functional>
 
 namespace nook
 {
@@ -95,27 +96,6 @@ void pointwise(Comparison& result, const VisibilityPlane& test, const Visibility
 
 // This work is based on: Morgan McGuire, "Ambient Occlusion Volumes", High Performance Graphics, 2010, eq. 14.
 
-// Table of log†(x) = sign(x) log(|x| + 1) for the integers from −255 to 255.
-class SignedLog
-{
-public:
-	SignedLog()
-	{
-		for (int x = 0; x < 256; ++x)
-		{
-			m_values[static_cast<std::size_t>(x)] = logOf(x + 1.0);
-		}
-	}
-	double operator()(int x) const
-	{
-		const double value = m_values[static_cast<std::size_t>(std::abs(x))];
-		return x < 0 ? -value : value;
-	}
-
-private:
-	std::array<double, 256> m_values{};
-};
-
 int byteOf(const VisibilityPlane& plane, std::size_t pixel)
 {
 	return static_cast<int>(std::floor(255.0 * std::clamp(static_cast<double>(plane.values[pixel]), 0.0, 1.0) + 0.5));
@@ -137,6 +117,108 @@ struct Terms
 double mean(const PixelTally& tally)
 {
 	return tally.count == 0 ? 0.0 : tally.sum / static_cast<double>(tally.count);
+}
+
+// Separable filters over bands of rows, so that a picture of any height needs memory for only a few rows. A kernel: weights of 2 ×
+// radius + 1 neighbours, starting at −radius.
+struct Kernel
+{
+	int radius = 0;
+	std::vector<double> weights;
+};
+
+// exp(−x²/(2σ²)), normalised to sum 1.
+Kernel gaussianKernel(double sigma_px, int radius)
+{
+	Kernel kernel{radius, {}};
+	double sum = 0.0;
+	for (int i = -radius; i <= radius; ++i)
+	{
+		kernel.weights.push_back(expOf(-0.5 * i * i / (sigma_px * sigma_px)));
+		sum += kernel.weights.back();
+	}
+	for (double& weight : kernel.weights)
+	{
+		weight /= sum;
+	}
+	return kernel;
+}
+
+// Rows [first, last) of a picture.
+struct Band
+{
+	int width_px = 0;
+	int height_px = 0; // height of the whole picture
+	int first = 0;
+	int last = 0;
+};
+
+constexpr int kBandRows = 64;
+
+// The picture's rows in bands of kBandRows.
+std::vector<Band> bandsOf(int width_px, int height_px)
+{
+	std::vector<Band> bands;
+	for (int first = 0; first < height_px; first += kBandRows)
+	{
+		bands.push_back({width_px, height_px, first, std::min(first + kBandRows, height_px)});
+	}
+	return bands;
+}
+
+// Writes row y of the picture, 0 ≤ y < height.
+using RowSource = std::function<void(int y, std::span<double> row)>;
+
+// Extends the row by `radius` copies of its end pixels on either side.
+void extend(std::vector<double>& row, int radius, int width)
+{
+	const auto begin = row.begin() + radius;
+	const auto end = begin + width;
+	std::fill(row.begin(), begin, *begin);
+	std::fill(end, row.end(), *(end - 1));
+}
+
+// A band of the filtered picture: kernel_x along rows, kernel_y along columns (correlation: the weight of offset k applies to the
+// pixel at x + k). Border pixels are repeated.
+std::vector<double> filteredBand(const Band& band, const RowSource& source, const Kernel& kernel_x, const Kernel& kernel_y)
+{
+	const auto width = static_cast<std::size_t>(band.width_px);
+	const auto rows = static_cast<std::size_t>(band.last - band.first);
+	std::vector<double> result(rows * width, 0.0);
+	std::vector<double> wide(width + 2 * static_cast<std::size_t>(kernel_x.radius));
+	std::vector<double> filtered(width);
+	const int top = std::max(0, band.first - kernel_y.radius);
+	const int bottom = std::min(band.height_px, band.last + kernel_y.radius);
+	for (int y = top; y < bottom; ++y)
+	{
+		source(y, std::span(wide).subspan(static_cast<std::size_t>(kernel_x.radius), width));
+		extend(wide, kernel_x.radius, band.width_px);
+		std::fill(filtered.begin(), filtered.end(), 0.0);
+		for (std::size_t k = 0; k < kernel_x.weights.size(); ++k)
+		{
+			const double weight = kernel_x.weights[k];
+			for (std::size_t x = 0; x < width; ++x)
+			{
+				filtered[x] += weight * wide[x + k];
+			}
+		}
+		// The first and the last row of the picture also represent those beyond it.
+		const int from = y == 0 ? -kernel_y.radius : y;
+		const int to = y == band.height_px - 1 ? y + kernel_y.radius : y;
+		for (int at = from; at <= to; ++at)
+		{
+			for (int out = std::max(band.first, at - kernel_y.radius); out < std::min(band.last, at + kernel_y.radius + 1); ++out)
+			{
+				const double weight = kernel_y.weights[static_cast<std::size_t>(at - out + kernel_y.radius)];
+				double* const target = result.data() + static_cast<std::size_t>(out - band.first) * width;
+				for (std::size_t x = 0; x < width; ++x)
+				{
+					target[x] += weight * filtered[x];
+				}
+			}
+		}
+	}
+	return result;
 }
 
 // This work is based on: Zhou Wang, Alan C. Bovik, Hamid R. Sheikh, Eero P. Simoncelli, "Image Quality Assessment: From Error
@@ -165,6 +247,56 @@ std::vector<double> means(const Band& band, const VisibilityPlane& test, const V
 		}
 	};
 	return filteredBand(band, source, kernel, kernel);
+}
+
+// SSIM (Wang et al. 2004): windows of 11 × 11 pixels, Gaussian of σ = 1.5, K1 = 0.01, K2 = 0.03, L = 1; the mean over counted
+// pixels whose window lies inside the picture, as in the authors' program. None if there is no such pixel.
+std::optional<double> meanSsim(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,
+							   const RunSettings& run)
+{
+	assert(test.width_px == reference.width_px && test.height_px == reference.height_px);
+	const Kernel kernel = gaussianKernel(kSigma, kWindow);
+	const std::vector<Band> bands = bandsOf(test.width_px, test.height_px);
+	std::vector<PixelTally> rows(static_cast<std::size_t>(test.height_px));
+	ProgressCounter progress(run.progress, "ssim", bands.size());
+	parallelFor(bands.size(), run.threads,
+				[&](std::size_t b)
+				{
+					const Band& band = bands[b];
+					const auto of = [&](auto f)
+					{
+						return means(band, test, reference, kernel, f);
+					};
+					// Eqs. 14 to 16. The mean of products minus the product of means loses precision only in nearly flat windows,
+					// where C2 dominates.
+					const std::vector<double> mean_t = of([](double t, double) { return t; });
+					const std::vector<double> mean_r = of([](double, double r) { return r; });
+					const std::vector<double> square_t = of([](double t, double) { return t * t; });
+					const std::vector<double> square_r = of([](double, double r) { return r * r; });
+					const std::vector<double> product = of([](double t, double r) { return t * r; });
+					const auto width = static_cast<std::size_t>(test.width_px);
+					for (int y = std::max(band.first, kWindow); y < std::min(band.last, test.height_px - kWindow); ++y)
+					{
+						for (std::size_t x = kWindow; x + kWindow < width; ++x)
+						{
+							if (!counts(counted, static_cast<std::size_t>(y) * width + x))
+							{
+								continue;
+							}
+							const std::size_t i = static_cast<std::size_t>(y - band.first) * width + x;
+							const double tt = mean_t[i] * mean_t[i];
+							const double rr = mean_r[i] * mean_r[i];
+							const double tr = mean_t[i] * mean_r[i];
+							// Eq. 13
+							rows[static_cast<std::size_t>(y)].add(
+								(2.0 * tr + kC1) * (2.0 * (product[i] - tr) + kC2) /
+								((tt + rr + kC1) * (square_t[i] - tt + (square_r[i] - rr) + kC2)));
+						}
+					}
+					progress.finishOne();
+				});
+	const PixelTally sum = sumOver(rows, [](const PixelTally& row) { return row; });
+	return sum.count == 0 ? std::nullopt : std::optional(sum.sum / static_cast<double>(sum.count));
 }
 
 // This work is based on: Pontus Andersson, Jim Nilsson, Tomas Akenine-Möller, Magnus Oskarsson, Kalle Åström, Mark D. Fairchild,
@@ -322,15 +454,6 @@ Seen seen(const Band& band, const VisibilityPlane& plane, const Filters& filters
 			strength(band, source, filters.point, filters.smooth)};
 }
 
-// Extends the row by `radius` copies of its end pixels on either side.
-void extend(std::vector<double>& row, int radius, int width)
-{
-	const auto begin = row.begin() + radius;
-	const auto end = begin + width;
-	std::fill(row.begin(), begin, *begin);
-	std::fill(end, row.end(), *(end - 1));
-}
-
 } // namespace
 
 Comparison compareImages(const VisibilityPlane& test, const VisibilityPlane& reference, const CompareSettings& settings,
@@ -366,7 +489,11 @@ double logError(const VisibilityPlane& test, const VisibilityPlane& reference, s
 				const RunSettings& run)
 {
 	assert(test.width_px == reference.width_px && test.height_px == reference.height_px);
-	const SignedLog log;
+	const std::vector<double> logs = listOf(256, [](std::size_t x) { return logOf(static_cast<double>(x) + 1.0); });
+	const auto log = [&logs](int x) // log†(x) = sign(x) log(|x| + 1), from −255 to 255
+	{
+		return std::copysign(logs[static_cast<std::size_t>(std::abs(x))], x);
+	};
 	const auto width = static_cast<std::size_t>(test.width_px);
 	const auto height = static_cast<std::size_t>(test.height_px);
 	std::vector<Terms> rows(height);
@@ -407,54 +534,6 @@ double logError(const VisibilityPlane& test, const VisibilityPlane& reference, s
 	return mean(sum.value) + 0.5 * (mean(sum.right) + mean(sum.down));
 }
 
-std::optional<double> meanSsim(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,
-							   const RunSettings& run)
-{
-	assert(test.width_px == reference.width_px && test.height_px == reference.height_px);
-	const Kernel kernel = gaussianKernel(kSigma, kWindow);
-	const std::vector<Band> bands = bandsOf(test.width_px, test.height_px);
-	std::vector<PixelTally> rows(static_cast<std::size_t>(test.height_px));
-	ProgressCounter progress(run.progress, "ssim", bands.size());
-	parallelFor(bands.size(), run.threads,
-				[&](std::size_t b)
-				{
-					const Band& band = bands[b];
-					const auto of = [&](auto f)
-					{
-						return means(band, test, reference, kernel, f);
-					};
-					// Eqs. 14 to 16. The mean of products minus the product of means loses precision only in nearly flat windows,
-					// where C2 dominates.
-					const std::vector<double> mean_t = of([](double t, double) { return t; });
-					const std::vector<double> mean_r = of([](double, double r) { return r; });
-					const std::vector<double> square_t = of([](double t, double) { return t * t; });
-					const std::vector<double> square_r = of([](double, double r) { return r * r; });
-					const std::vector<double> product = of([](double t, double r) { return t * r; });
-					const auto width = static_cast<std::size_t>(test.width_px);
-					for (int y = std::max(band.first, kWindow); y < std::min(band.last, test.height_px - kWindow); ++y)
-					{
-						for (std::size_t x = kWindow; x + kWindow < width; ++x)
-						{
-							if (!counts(counted, static_cast<std::size_t>(y) * width + x))
-							{
-								continue;
-							}
-							const std::size_t i = static_cast<std::size_t>(y - band.first) * width + x;
-							const double tt = mean_t[i] * mean_t[i];
-							const double rr = mean_r[i] * mean_r[i];
-							const double tr = mean_t[i] * mean_r[i];
-							// Eq. 13
-							rows[static_cast<std::size_t>(y)].add(
-								(2.0 * tr + kC1) * (2.0 * (product[i] - tr) + kC2) /
-								((tt + rr + kC1) * (square_t[i] - tt + (square_r[i] - rr) + kC2)));
-						}
-					}
-					progress.finishOne();
-				});
-	const PixelTally sum = total(rows);
-	return sum.count == 0 ? std::nullopt : std::optional(sum.sum / static_cast<double>(sum.count));
-}
-
 double meanFlip(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,
 				double pixels_per_degree, const RunSettings& run)
 {
@@ -490,80 +569,8 @@ double meanFlip(const VisibilityPlane& test, const VisibilityPlane& reference, s
 					}
 					progress.finishOne();
 				});
-	const PixelTally sum = total(rows);
+	const PixelTally sum = sumOver(rows, [](const PixelTally& row) { return row; });
 	return sum.sum / static_cast<double>(sum.count);
-}
-
-Kernel gaussianKernel(double sigma_px, int radius)
-{
-	Kernel kernel{radius, {}};
-	double sum = 0.0;
-	for (int i = -radius; i <= radius; ++i)
-	{
-		kernel.weights.push_back(expOf(-0.5 * i * i / (sigma_px * sigma_px)));
-		sum += kernel.weights.back();
-	}
-	for (double& weight : kernel.weights)
-	{
-		weight /= sum;
-	}
-	return kernel;
-}
-
-std::vector<Band> bandsOf(int width_px, int height_px)
-{
-	std::vector<Band> bands;
-	for (int first = 0; first < height_px; first += kBandRows)
-	{
-		bands.push_back({width_px, height_px, first, std::min(first + kBandRows, height_px)});
-	}
-	return bands;
-}
-
-std::vector<double> filteredBand(const Band& band, const RowSource& source, const Kernel& kernel_x, const Kernel& kernel_y)
-{
-	const auto width = static_cast<std::size_t>(band.width_px);
-	const auto rows = static_cast<std::size_t>(band.last - band.first);
-	std::vector<double> result(rows * width, 0.0);
-	std::vector<double> wide(width + 2 * static_cast<std::size_t>(kernel_x.radius));
-	std::vector<double> filtered(width);
-	const int top = std::max(0, band.first - kernel_y.radius);
-	const int bottom = std::min(band.height_px, band.last + kernel_y.radius);
-	for (int y = top; y < bottom; ++y)
-	{
-		source(y, std::span(wide).subspan(static_cast<std::size_t>(kernel_x.radius), width));
-		extend(wide, kernel_x.radius, band.width_px);
-		std::fill(filtered.begin(), filtered.end(), 0.0);
-		for (std::size_t k = 0; k < kernel_x.weights.size(); ++k)
-		{
-			const double weight = kernel_x.weights[k];
-			for (std::size_t x = 0; x < width; ++x)
-			{
-				filtered[x] += weight * wide[x + k];
-			}
-		}
-		// The first and the last row of the picture also represent those beyond it.
-		const int from = y == 0 ? -kernel_y.radius : y;
-		const int to = y == band.height_px - 1 ? y + kernel_y.radius : y;
-		for (int at = from; at <= to; ++at)
-		{
-			for (int out = std::max(band.first, at - kernel_y.radius); out < std::min(band.last, at + kernel_y.radius + 1); ++out)
-			{
-				const double weight = kernel_y.weights[static_cast<std::size_t>(at - out + kernel_y.radius)];
-				double* const target = result.data() + static_cast<std::size_t>(out - band.first) * width;
-				for (std::size_t x = 0; x < width; ++x)
-				{
-					target[x] += weight * filtered[x];
-				}
-			}
-		}
-	}
-	return result;
-}
-
-PixelTally total(std::span<const PixelTally> rows)
-{
-	return sumOver(rows, [](const PixelTally& row) { return row; });
 }
 
 } // namespace nook

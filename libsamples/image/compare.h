@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -46,7 +45,7 @@ struct Comparison
 	double p95 = 0.0;           // 95th percentile of |error|
 	double max = 0.0;           // greatest |error|
 	WorstPixel worst;           // where `max` occurs; the first in reading order
-	std::optional<double> ssim; // mean structural similarity, 1 for equal images; none for images below 11 × 11 (see meanSsim)
+	std::optional<double> ssim; // mean structural similarity, 1 for equal images; none where no 11 × 11 window counts
 	double flip = 0.0;          // mean FLIP, 0 to 1
 	double eq14 = 0.0;          // AOV's perceptual error (see logError)
 };
@@ -54,11 +53,6 @@ struct Comparison
 // Requires equal sizes ≥ 1 × 1, finite values and at least one counted pixel. Sums run row by row in a fixed order.
 Comparison compareImages(const VisibilityPlane& test, const VisibilityPlane& reference, const CompareSettings& settings,
 						 const RunSettings& run);
-
-// SSIM (Wang et al. 2004): windows of 11 × 11 pixels, Gaussian of σ = 1.5, K1 = 0.01, K2 = 0.03, L = 1; the mean over counted
-// pixels whose window lies inside the picture, as in the authors' program. None if there is no such pixel.
-std::optional<double> meanSsim(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,
-							   const RunSettings& run);
 
 // LDR-FLIP (Andersson et al. 2020) of visibility as a gray sRGB value, clamped to 0…1. Border pixels are repeated.
 double meanFlip(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,
@@ -85,38 +79,6 @@ enum class ErrorMetric
 // 0 for equal images; none if SSIM is undefined.
 std::optional<double> errorBy(const Comparison& comparison, ErrorMetric metric);
 
-// Separable filters over bands of rows, so that a picture of any height needs memory for only a few rows. A kernel: weights of 2 ×
-// radius + 1 neighbours, starting at −radius.
-struct Kernel
-{
-	int radius = 0;
-	std::vector<double> weights;
-};
-
-// exp(−x²/(2σ²)), normalised to sum 1.
-Kernel gaussianKernel(double sigma_px, int radius);
-
-// Rows [first, last) of a picture.
-struct Band
-{
-	int width_px = 0;
-	int height_px = 0; // height of the whole picture
-	int first = 0;
-	int last = 0;
-};
-
-inline constexpr int kBandRows = 64;
-
-// The picture's rows in bands of kBandRows.
-std::vector<Band> bandsOf(int width_px, int height_px);
-
-// Writes row y of the picture, 0 ≤ y < height.
-using RowSource = std::function<void(int y, std::span<double> row)>;
-
-// A band of the filtered picture: kernel_x along rows, kernel_y along columns (correlation: the weight of offset k applies to the
-// pixel at x + k). Border pixels are repeated.
-std::vector<double> filteredBand(const Band& band, const RowSource& source, const Kernel& kernel_x, const Kernel& kernel_y);
-
 // Sum and number of the counted pixels.
 struct PixelTally
 {
@@ -135,9 +97,6 @@ struct PixelTally
 		return *this;
 	}
 };
-
-// Adds the tallies of the rows in order.
-PixelTally total(std::span<const PixelTally> rows);
 
 inline bool counts(std::span<const uint8_t> counted, std::size_t pixel)
 {

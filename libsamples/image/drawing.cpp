@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/drawing.h"
 
-#include "core/image.h"
 #include "core/lists.h"
-#include "core/math.h"
-#include "core/words.h"
-
-#include <glm/geometric.hpp>
 
 #include <array>
 #include <cmath>

@@ -3,7 +3,6 @@
 
 #include "core/lists.h"
 #include "core/math.h"
-#include "core/words.h"
 #include "image/compare.h"
 
 #include <glm/geometric.hpp>
@@ -16,19 +15,6 @@ namespace nook
 {
 namespace
 {
-
-// Both have path, width_px and height_px.
-template <class Picture> void requireSameSize(const Picture& test, const Picture& reference)
-{
-	const auto sizeText = [](const Picture& picture)
-	{
-		return std::to_string(picture.width_px) + "x" + std::to_string(picture.height_px) + " pixels";
-	};
-	if (test.width_px != reference.width_px || test.height_px != reference.height_px)
-	{
-		refuseInput(test.path + ": size", sizeText(test), sizeText(reference) + " as " + reference.path);
-	}
-}
 
 bool isGray(const Image& image, int r, int g, int b)
 {
@@ -115,11 +101,6 @@ VisibilityImage visibilityOf(const Image& image, const std::string& path, const 
 	return result;
 }
 
-void checkSameSize(const VisibilityImage& test, const VisibilityImage& reference)
-{
-	requireSameSize(test, reference);
-}
-
 std::optional<double> ownUncertainty(const VisibilityImage& image, std::span<const uint8_t> counted)
 {
 	PixelTally sum;
@@ -161,7 +142,7 @@ BentImage bentOf(const Image& image, const std::string& path)
 
 BentAngles anglesBetween(const BentImage& test, const BentImage& reference, std::span<const uint8_t> counted)
 {
-	requireSameSize(test, reference);
+	checkSameSize(test, reference);
 	BentAngles result;
 	std::vector<double> angles;
 	double sum = 0.0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/image.h"
+#include "core/words.h"
 #include "image/compare.h"
 
 #include <glm/vec3.hpp>
@@ -36,8 +37,18 @@ struct VisibilityImage
 // that do) or a value is not finite.
 VisibilityImage visibilityOf(const Image& image, const std::string& path, const std::string& wanted);
 
-// Throws Error (invalid_input) if the sizes differ.
-void checkSameSize(const VisibilityImage& test, const VisibilityImage& reference);
+// Throws Error (invalid_input) if the sizes of two pictures with path, width_px and height_px differ.
+template <class Picture> void checkSameSize(const Picture& test, const Picture& reference)
+{
+	const auto sizeText = [](const Picture& picture)
+	{
+		return std::to_string(picture.width_px) + "x" + std::to_string(picture.height_px) + " pixels";
+	};
+	if (test.width_px != reference.width_px || test.height_px != reference.height_px)
+	{
+		refuseInput(test.path + ": size", sizeText(test), sizeText(reference) + " as " + reference.path);
+	}
+}
 
 // Root mean square of the standard error over the counted pixels; none without that channel.
 std::optional<double> ownUncertainty(const VisibilityImage& image, std::span<const uint8_t> counted);

@@ -9,16 +9,13 @@
 #include <algorithm>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace nook
 {
 
-struct PageSlot
-{
-	std::string_view name; // "@STYLE@"
-	std::string text;
-};
+using PageSlot = std::pair<std::string_view, std::string>; // "@STYLE@" and its text
 
 // Replaces each slot of the template with its text, in one pass, because a text may contain slot names.
 inline std::string filledPage(std::string_view page, const std::vector<PageSlot>& slots)
@@ -26,12 +23,11 @@ inline std::string filledPage(std::string_view page, const std::vector<PageSlot>
 	std::string out;
 	while (!page.empty())
 	{
-		const auto slot =
-			std::find_if(slots.begin(), slots.end(), [&](const PageSlot& s) { return page.substr(0, s.name.size()) == s.name; });
+		const auto slot = std::find_if(slots.begin(), slots.end(), [&](const PageSlot& s) { return page.starts_with(s.first); });
 		if (slot != slots.end())
 		{
-			out += slot->text;
-			page.remove_prefix(slot->name.size());
+			out += slot->second;
+			page.remove_prefix(slot->first.size());
 		}
 		else
 		{

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/candidates.h"
 
-#include "core/decimal.h"
+#include "core/lists.h"
 #include "methods/feature_table.h"
 #include "pattern/recipe.h"
 
@@ -13,24 +13,19 @@ namespace nook
 namespace
 {
 
-void add(std::string& name, const std::string& word)
-{
-	name += " " + word;
-}
-
 std::string screenName(const Candidate& candidate)
 {
 	const ShadeSettings shade = shadeSettingsOf(candidate, 1.0);
 	std::string name(nameOf(shade.method));
-	add(name, std::to_string(candidate.count));
+	name += " " + std::to_string(candidate.count);
 	if (candidate.source != SampleSource::own)
 	{
-		add(name, std::string(nameOf(candidate.source)));
+		name += " " + std::string(nameOf(candidate.source));
 	}
 	if (shade.filter != ShadeFilter::none)
 	{
-		add(name, valueText(featureOf("--filter"), shade) +
-					  (shade.filter == ShadeFilter::bilateral ? "-" + std::to_string(shade.filter_taps) : ""));
+		name += " " + valueText(featureOf("--filter"), shade);
+		name += shade.filter == ShadeFilter::bilateral ? "-" + std::to_string(shade.filter_taps) : "";
 	}
 	return name + (candidate.recipe ? featureWords(candidate.shade) + " rays" : featureWords(shade));
 }
@@ -136,17 +131,6 @@ Recipe recipeOf(const Candidate& candidate)
 	return recipe;
 }
 
-std::vector<Pattern> independent(Recipe recipe, const RunSettings& run)
-{
-	std::vector<Pattern> variants;
-	for (int i = 0; i < kWindow_px * kWindow_px; ++i)
-	{
-		recipe.seed = static_cast<uint32_t>(i + 1);
-		variants.push_back(generatePattern(recipe, run));
-	}
-	return variants;
-}
-
 } // namespace
 
 CandidatePattern patternOf(const Candidate& candidate, const RunSettings& run)
@@ -162,7 +146,10 @@ CandidatePattern patternOf(const Candidate& candidate, const RunSettings& run)
 	}
 	if (candidate.source == SampleSource::uniform)
 	{
-		made.variants = independent(made.recipe, run);
+		for (Recipe recipe = made.recipe; recipe.seed <= kWindow_px * kWindow_px; ++recipe.seed) // from 1
+		{
+			made.variants.push_back(generatePattern(recipe, run));
+		}
 		return made;
 	}
 	made.tiled = true;
@@ -190,14 +177,7 @@ ShadeSamples samplesOf(const Candidate& candidate, const ShadeSettings& settings
 	{
 		variants = patternOf(candidate, run).variants;
 	}
-	if (settings.volume.paired)
-	{
-		for (Pattern& variant : variants)
-		{
-			variant = pairedPattern(variant);
-		}
-	}
-	return samplesOf(settings.method, variants);
+	return samplesOf(settings.method, settings.volume.paired ? mapped(variants, pairedPattern) : variants);
 }
 
 const ShadeSamples& SampleStore::samplesOf(const Candidate& candidate, const ShadeSettings& settings, const RunSettings& run)

@@ -2,11 +2,13 @@
 // Finds the best candidate at each budget of time, and errors that have grown since an earlier report.
 #include "core/decimal.h"
 #include "core/error.h"
+#include "core/lists.h"
 #include "study/error_points.h"
 #include "study/error_report.h"
 #include "study/front.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -70,13 +72,8 @@ void setShare(ErrorView& view, const std::vector<double>& budgets)
 	}
 	const double all = budgets.size() > 1 ? std::log(budgets.back() / budgets.front()) : 0.0;
 	share.held = all > 0.0 ? held / all : 0.0;
-	for (const ErrorPoint& point : view.points)
-	{
-		if (point.front && point.origin == Origin::paper)
-		{
-			share.papers.push_back(point.name);
-		}
-	}
+	share.papers = mapped(itemsWhere(view.points, [](const ErrorPoint& p) { return p.front && p.origin == Origin::paper; }),
+						  [](const ErrorPoint& point) { return point.name; });
 }
 
 const ErrorView* viewNamed(const ErrorReport& report, const std::string& level, const std::string& camera)
@@ -111,8 +108,9 @@ void compareViews(const std::string& level, const ErrorView& before, const Error
 	requireSame(where, "height", before.height_px, now.height_px);
 	for (const ErrorPoint& old : before.points)
 	{
-		const ErrorPoint* const fresh = pointNamed(now.points, old.name);
-		if (fresh == nullptr)
+		const auto fresh =
+			std::find_if(now.points.begin(), now.points.end(), [&](const ErrorPoint& point) { return point.name == old.name; });
+		if (fresh == now.points.end())
 		{
 			result.missing.push_back(where + ", " + old.name);
 			continue;
@@ -134,25 +132,13 @@ constexpr const char* kOfPaper = " paper";
 
 // Keys of bestOf() in the order in which pictures are shown: papers' recipes, rays, nook's forms. A method that is not among them
 // is shown where it holds the front.
-const std::vector<std::string>& shownMethods()
-{
-	static const std::vector<std::string> shown{"vo-line paper", "aov paper", "alchemy paper", "statvo paper", "vo-point paper",
-												"hbao paper",    "rays",      "aov",           "vo-line",      "alchemy",
-												"aov-mask",      "statvo",    "slices"};
-	return shown;
-}
+constexpr std::array<const char*, 13> kShown{"vo-line paper", "aov paper", "alchemy paper", "statvo paper", "vo-point paper",
+											 "hbao paper",    "rays",      "aov",           "vo-line",      "alchemy",
+											 "aov-mask",      "statvo",    "slices"};
 
 std::vector<std::size_t> frontOf(const ErrorView& view)
 {
-	std::vector<std::size_t> front;
-	for (std::size_t i = 0; i < view.points.size(); ++i)
-	{
-		if (view.points[i].front)
-		{
-			front.push_back(i);
-		}
-	}
-	return front;
+	return indicesWhere(view.points.size(), [&](std::size_t i) { return view.points[i].front; });
 }
 
 // Returns the point with the least error of each method and origin.
@@ -164,7 +150,7 @@ std::map<std::string, std::size_t> bestOf(const ErrorView& view)
 		const ErrorPoint& point = view.points[i];
 		const std::string key = point.method + (point.origin == Origin::paper ? kOfPaper : "");
 		const auto [found, fresh] = best.emplace(key, i);
-		if (!fresh && point.measured.errors.eq14 < view.points[found->second].measured.errors.eq14)
+		if (!fresh && errorOf(point) < errorOf(view.points[found->second]))
 		{
 			found->second = i;
 		}
@@ -173,12 +159,6 @@ std::map<std::string, std::size_t> bestOf(const ErrorView& view)
 }
 
 } // namespace
-
-const ErrorPoint* pointNamed(const std::vector<ErrorPoint>& points, const std::string& name)
-{
-	const auto found = std::find_if(points.begin(), points.end(), [&](const ErrorPoint& point) { return point.name == name; });
-	return found == points.end() ? nullptr : &*found;
-}
 
 void setFront(ErrorView& view)
 {
@@ -247,15 +227,14 @@ std::set<std::size_t> chosenPoints(const ErrorView& view, std::size_t count)
 	std::vector<std::size_t> front = frontOf(view);
 	const std::map<std::string, std::size_t> best = bestOf(view);
 	std::sort(front.begin(), front.end(),
-			  [&](std::size_t a, std::size_t b)
-			  { return view.points[a].measured.total.median_s < view.points[b].measured.total.median_s; });
+			  [&](std::size_t a, std::size_t b) { return timeOf(view.points[a]) < timeOf(view.points[b]); });
 	std::set<std::size_t> chosen;
 	const std::size_t of_front = std::min(front.size(), (count + 1) / 2);
 	for (std::size_t i = 0; i < of_front; ++i)
 	{
 		chosen.insert(front[of_front == 1 ? 0 : i * (front.size() - 1) / (of_front - 1)]);
 	}
-	for (const std::string& key : shownMethods())
+	for (const char* const key : kShown)
 	{
 		const auto found = best.find(key);
 		if (found != best.end() && chosen.size() < count)

@@ -2,6 +2,7 @@
 // A report ↔ JSON, schema nook.error-report/1.
 #include "core/base64.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "study/error_report.h"
 #include "study/measure_view.h"
 
@@ -55,59 +56,39 @@ ScreenLimit limitFrom(const JsonValue& value)
 
 Json viewJson(const ErrorView& view)
 {
-	Json json{{"camera", view.camera},
-			  {"width_px", view.width_px},
-			  {"height_px", view.height_px},
-			  {"surface_share", view.surface_share},
-			  {"reference_error", view.reference_error},
-			  {"mean_visibility", view.mean_visibility},
-			  {"front",
-			   {{"held", view.share.held},
-				{"papers", view.share.papers},
-				{"worst_ratio", optionalJson(view.share.worst_ratio)},
-				{"worst_paper", view.share.worst_paper}}},
-			  {"screen_space_limit", view.limit ? limitJson(*view.limit) : Json()},
-			  {"points", Json::array()},
-			  {"stopped", Json::array()},
-			  {"picture", pictureJson(view.picture)}};
-	for (const ErrorPoint& point : view.points)
+	const auto stoppedJson = [](const StoppedPoint& stopped)
 	{
-		json["points"].push_back(pointJson(point));
-	}
-	for (const StoppedPoint& stopped : view.stopped)
-	{
-		json["stopped"].push_back({{"candidate", stopped.name}, {"method", stopped.method}, {"expected_s", stopped.expected_s}});
-	}
-	return json;
+		return Json{{"candidate", stopped.name}, {"method", stopped.method}, {"expected_s", stopped.expected_s}};
+	};
+	return {{"camera", view.camera},
+			{"width_px", view.width_px},
+			{"height_px", view.height_px},
+			{"surface_share", view.surface_share},
+			{"reference_error", view.reference_error},
+			{"mean_visibility", view.mean_visibility},
+			{"front",
+			 {{"held", view.share.held},
+			  {"papers", view.share.papers},
+			  {"worst_ratio", optionalJson(view.share.worst_ratio)},
+			  {"worst_paper", view.share.worst_paper}}},
+			{"screen_space_limit", view.limit ? limitJson(*view.limit) : Json()},
+			{"points", mapped(view.points, pointJson)},
+			{"stopped", mapped(view.stopped, stoppedJson)},
+			{"picture", pictureJson(view.picture)}};
 }
 
 Json levelJson(const ErrorLevel& level)
 {
-	Json json{{"name", level.name},
-			  {"failure", level.failure},
-			  {"triangles", level.triangles},
-			  {"radius_m", level.radius_m},
-			  {"views", Json::array()}};
-	for (const ErrorView& view : level.views)
-	{
-		json["views"].push_back(viewJson(view));
-	}
-	return json;
+	return {{"name", level.name},
+			{"failure", level.failure},
+			{"triangles", level.triangles},
+			{"radius_m", level.radius_m},
+			{"views", mapped(level.views, viewJson)}};
 }
 
 int wholeFrom(const JsonValue& value, int64_t least, int64_t most)
 {
 	return static_cast<int>(value.integer(least, most));
-}
-
-std::vector<std::string> textsFrom(const JsonValue& value)
-{
-	std::vector<std::string> texts;
-	for (std::size_t i = 0; i < value.arraySize(); ++i)
-	{
-		texts.push_back(value.at(i).string());
-	}
-	return texts;
 }
 
 std::vector<uint8_t> pictureFrom(const JsonValue& value, std::size_t pixels)
@@ -141,14 +122,21 @@ ErrorPoint pointFrom(const JsonValue& value, std::size_t pixels)
 	return point;
 }
 
-// Adds an item under a name that no earlier item has: items of two reports are compared by their names.
-template <class Item> void addOnce(std::vector<Item>& items, Item item, std::string Item::*name, const JsonValue& where)
+// Items by a name that no two of them have, in the field `by`: items of two reports are compared by their names.
+template <class Item, class Read>
+std::vector<Item> namedFrom(const JsonValue& list, std::string Item::*name, const char* by, const Read& read)
 {
-	if (std::any_of(items.begin(), items.end(), [&](const Item& other) { return other.*name == item.*name; }))
+	std::vector<Item> items;
+	for (std::size_t i = 0; i < list.arraySize(); ++i)
 	{
-		where.fail("'" + item.*name + "' twice", "each once");
+		Item item = read(list.at(i));
+		if (std::any_of(items.begin(), items.end(), [&](const Item& other) { return other.*name == item.*name; }))
+		{
+			list.at(i).at(by).fail("'" + item.*name + "' twice", "each once");
+		}
+		items.push_back(std::move(item));
 	}
-	items.push_back(std::move(item));
+	return items;
 }
 
 ErrorView viewFrom(const JsonValue& value)
@@ -162,27 +150,23 @@ ErrorView viewFrom(const JsonValue& value)
 	view.mean_visibility = value.at("mean_visibility").number();
 	const JsonValue front = value.at("front");
 	view.share.held = front.at("held").number();
-	view.share.papers = textsFrom(front.at("papers"));
+	view.share.papers = front.at("papers").elements(&JsonValue::string);
 	view.share.worst_ratio = optionalNumber(front.at("worst_ratio"));
 	view.share.worst_paper = front.at("worst_paper").string();
 	const std::size_t pixels = static_cast<std::size_t>(view.width_px) * static_cast<std::size_t>(view.height_px);
-	const JsonValue points = value.at("points");
-	for (std::size_t i = 0; i < points.arraySize(); ++i)
-	{
-		addOnce(view.points, pointFrom(points.at(i), pixels), &ErrorPoint::name, points.at(i).at("name"));
-	}
+	view.points = namedFrom(value.at("points"), &ErrorPoint::name, "name",
+							[pixels](const JsonValue& point) { return pointFrom(point, pixels); });
 	if (value.has("screen_space_limit") && !value.at("screen_space_limit").value->is_null())
 	{
 		view.limit = limitFrom(value.at("screen_space_limit"));
 	}
 	if (value.has("stopped")) // not in reports of before
 	{
-		const JsonValue list = value.at("stopped");
-		for (std::size_t i = 0; i < list.arraySize(); ++i)
+		const auto stoppedFrom = [](const JsonValue& one)
 		{
-			const JsonValue one = list.at(i);
-			view.stopped.push_back({one.at("candidate").string(), one.at("method").string(), one.at("expected_s").number()});
-		}
+			return StoppedPoint{one.at("candidate").string(), one.at("method").string(), one.at("expected_s").number()};
+		};
+		view.stopped = value.at("stopped").elements(stoppedFrom);
 	}
 	view.picture = pictureFrom(value.at("picture"), pixels);
 	return view;
@@ -195,11 +179,7 @@ ErrorLevel levelFrom(const JsonValue& value)
 	level.failure = value.at("failure").string();
 	level.triangles = static_cast<std::size_t>(value.at("triangles").integer(0, kMany));
 	level.radius_m = value.at("radius_m").number();
-	const JsonValue views = value.at("views");
-	for (std::size_t i = 0; i < views.arraySize(); ++i)
-	{
-		addOnce(level.views, viewFrom(views.at(i)), &ErrorView::camera, views.at(i).at("camera"));
-	}
+	level.views = namedFrom(value.at("views"), &ErrorView::camera, "camera", viewFrom);
 	return level;
 }
 
@@ -207,19 +187,14 @@ ErrorLevel levelFrom(const JsonValue& value)
 
 Json errorReportFields(const ErrorReport& report)
 {
-	Json json{{"schema", kSchema},
-			  {"command", report.command},
-			  {"version", report.context.version},
-			  {"machine",
-			   {{"renderer", report.context.renderer}, {"software", report.context.software}, {"threads", report.context.threads}}},
-			  {"rays", report.rays},
-			  {"repetitions", report.repetitions},
-			  {"levels", Json::array()}};
-	for (const ErrorLevel& level : report.levels)
-	{
-		json["levels"].push_back(levelJson(level));
-	}
-	return json;
+	return {{"schema", kSchema},
+			{"command", report.command},
+			{"version", report.context.version},
+			{"machine",
+			 {{"renderer", report.context.renderer}, {"software", report.context.software}, {"threads", report.context.threads}}},
+			{"rays", report.rays},
+			{"repetitions", report.repetitions},
+			{"levels", mapped(report.levels, levelJson)}};
 }
 
 std::string errorReportJson(const ErrorReport& report)
@@ -239,11 +214,7 @@ ErrorReport errorReportFrom(const std::string& text, const std::string& path)
 					  wholeFrom(machine.at("threads"), 1, 1000000), root.at("version").string()};
 	report.rays = wholeFrom(root.at("rays"), 1, 1000000);
 	report.repetitions = wholeFrom(root.at("repetitions"), 0, 1000000);
-	const JsonValue levels = root.at("levels");
-	for (std::size_t i = 0; i < levels.arraySize(); ++i)
-	{
-		addOnce(report.levels, levelFrom(levels.at(i)), &ErrorLevel::name, levels.at(i).at("name"));
-	}
+	report.levels = namedFrom(root.at("levels"), &ErrorLevel::name, "name", levelFrom);
 	return report;
 }
 

@@ -25,6 +25,8 @@ namespace
 // triangles.
 constexpr double kFewTriangles = 2e-3;
 
+constexpr double kLimit_s = 1.3e-4; // of a pixel, on one thread: the screen-space limit (docs/reference/sharing.md)
+
 std::vector<uint8_t> bytesOf(const std::vector<float>& visibility)
 {
 	return mapped(visibility,
@@ -91,8 +93,8 @@ private:
 			keepOrFail([&] { addInputs(loaded.level.files, m_split); });
 			level.name = loaded.level.name;
 			LevelBench bench(std::move(loaded.level), m_settings.radius_m, m_run, m_samples, kFewTriangles);
-			level.triangles = bench.level().triangles.size();
-			level.radius_m = bench.radiusM();
+			level.triangles = bench.level.triangles.size();
+			level.radius_m = bench.radius_m;
 			for (const LevelCamera& camera : camerasOf(bench))
 			{
 				measureView(bench, camera, level);
@@ -131,11 +133,11 @@ private:
 
 	std::vector<LevelCamera> camerasOf(const LevelBench& bench) const
 	{
-		CamerasOfLevel found = nook::camerasOf(bench.tracer(), m_settings.camera, m_settings.automatic, m_run);
+		CamerasOfLevel found = nook::camerasOf(bench.tracer, m_settings.camera, m_settings.automatic, m_run);
 		if (!found.chosen)
 		{
 			const LevelCamera& camera = found.cameras.front();
-			checkOutside(bench.tracer(), glm::dvec3(camera.world_from_camera[3]), camera.name);
+			checkOutside(bench.tracer, glm::dvec3(camera.world_from_camera[3]), camera.name);
 		}
 		return std::move(found.cameras);
 	}
@@ -167,7 +169,7 @@ private:
 		}
 		setFront(view); // in a part: of its own points, among which is all that is on the front of all
 		shareFlicker(on, bench, drawn, view);
-		addLimit(on, bench, view);
+		addLimit(on, view);
 		if (isShare(m_split)) // what follows needs all points
 		{
 			level.views.push_back(std::move(view));
@@ -179,16 +181,11 @@ private:
 			level.failure += (level.failure.empty() ? "" : "; ") + camera.name + ": " + failed.front();
 			level.failure += failed.size() > 1 ? ", and " + std::to_string(failed.size() - 1) + " more" : "";
 		}
-		dropPictures(view);
-		level.views.push_back(std::move(view));
-	}
-
-	static void dropPictures(ErrorView& view)
-	{
 		for (ErrorPoint& one : view.points)
 		{
 			one.measured.visibility = std::vector<float>(); // frees its memory, too
 		}
+		level.views.push_back(std::move(view));
 	}
 
 	// Adds a point for each candidate that could be measured, and returns these candidates. One that fails (no memory for a level's
@@ -218,12 +215,12 @@ private:
 			}
 			progress.finishOne();
 		};
-		const CandidateCosts costs(m_grid, m_points.costOf(on, bench), m_made);
+		const std::vector<double> costs = candidateSeconds(m_grid, m_points.costOf(on, bench), m_made);
 		keepOrFail(
 			[&]
 			{
-				runStage({"points on " + m_points.context().renderer, m_grid.size(),
-						  [&](std::size_t i) { return costs.seconds(i); }, attempt,
+				runStage({"points on " + m_points.context().renderer, m_grid.size(), [&](std::size_t i) { return costs[i]; },
+						  attempt,
 						  [&](std::size_t i, Archive& archive)
 						  {
 							  archive(tried[i].failure, tried[i].expected_s);
@@ -234,7 +231,7 @@ private:
 						  },
 						  [&](std::size_t i)
 						  {
-							  return sharedBy(m_grid[i], bench.contentHash());
+							  return sharedBy(m_grid[i], bench.hash);
 						  }},
 						 {1, {}, m_split.units});
 			});
@@ -260,17 +257,10 @@ private:
 
 	static double meanOver(const ViewBench& on)
 	{
-		double sum = 0.0;
-		std::size_t pixels = 0;
-		for (std::size_t i = 0; i < on.gbuffer().depth.size(); ++i)
-		{
-			if (std::isfinite(on.gbuffer().depth[i]))
-			{
-				sum += static_cast<double>(on.reference().visibility[i]);
-				pixels += 1;
-			}
-		}
-		return pixels > 0 ? sum / static_cast<double>(pixels) : 1.0;
+		const std::vector<float>& depth = on.gbuffer().depth;
+		const std::vector<std::size_t> pixels = indicesWhere(depth.size(), [&](std::size_t i) { return std::isfinite(depth[i]); });
+		const double sum = sumOver(pixels, [&](std::size_t i) { return static_cast<double>(on.reference().visibility[i]); });
+		return pixels.empty() ? 1.0 : sum / static_cast<double>(pixels.size());
 	}
 
 	// Where the work is shared out, a part moves what may be chosen: the choice is a matter of all points, but what is on the front
@@ -314,7 +304,7 @@ private:
 							  pass,
 							  [&](std::size_t unit)
 							  {
-								  return sharedBy(m_grid[unit], bench.contentHash());
+								  return sharedBy(m_grid[unit], bench.hash);
 							  }};
 		keepOrFail([&] { runStage(stage, {1, m_run.progress, m_split.units}); });
 	}
@@ -339,7 +329,7 @@ private:
 		}
 	}
 
-	void addLimit(ViewBench& on, LevelBench& bench, ErrorView& view)
+	void addLimit(ViewBench& on, ErrorView& view)
 	{
 		const auto draw = [&](const Candidate& candidate)
 		{
@@ -354,7 +344,8 @@ private:
 			keepOrFail(
 				[&]
 				{
-					runStage({"limits", 1, [&](std::size_t) { return limitSeconds(m_points.costOf(on, bench)); }, find,
+					runStage({"limits", 1, [&](std::size_t) { return kLimit_s * static_cast<double>(on.gbuffer().depth.size()); },
+							  find,
 							  [&](std::size_t, Archive& archive)
 							  {
 								  archive(view.limit);

@@ -9,10 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <cassert>
 #include <filesystem>
-#include <string_view>
 #include <utility>
 
 namespace nook
@@ -67,15 +65,7 @@ std::vector<std::pair<std::string, std::string>> readingText(const ErrorReport& 
 std::string errorReportHtml(std::span<const ErrorReport> reports, const std::string& version)
 {
 	assert(!reports.empty());
-	Json data{{"reports", Json::array()}, {"reading", Json::array()}};
-	for (const ErrorReport& report : reports)
-	{
-		data["reports"].push_back(errorReportFields(report));
-	}
-	for (const auto& [name, text] : readingText(reports.front()))
-	{
-		data["reading"].push_back({name, text});
-	}
+	const Json data{{"reports", mapped(reports, errorReportFields)}, {"reading", readingText(reports.front())}};
 	return pageHtml({"run time against error",
 					 version,
 					 assets::error_html,
@@ -89,16 +79,13 @@ std::string errorReportHtml(std::span<const ErrorReport> reports, const std::str
 std::string errorReportCommand(const ErrorReportSettings& settings)
 {
 	const ErrorReportSettings defaults;
-	std::string text = "nook report error";
-	for (const std::string& level : settings.levels)
+	const auto nameOfLevel = [](const std::string& level)
 	{
-		text += " " + shellWord(level.starts_with("builtin:") ? level : std::filesystem::path(level).filename().string());
-	}
+		return " " + shellWord(level.starts_with("builtin:") ? level : std::filesystem::path(level).filename().string());
+	};
+	std::string text = "nook report error" + joinedText(settings.levels, "", nameOfLevel);
 	text += loadOptions(settings.load) + " --grid " + std::string(nameOf(settings.grid));
-	for (const std::string& method : settings.methods)
-	{
-		text += (&method == &settings.methods.front() ? " --methods " : ",") + method;
-	}
+	text += settings.methods.empty() ? "" : " --methods " + joinedText(settings.methods, ",");
 	text += settings.automatic > 0    ? " --camera auto:" + std::to_string(settings.automatic)
 			: settings.camera.empty() ? ""
 									  : " --camera " + shellWord(settings.camera);
@@ -120,10 +107,7 @@ std::string loadOptions(const LoadSettings& load)
 	text += load.up == UpAxis::file ? "" : std::string(" --up ") + "xyz"[static_cast<std::size_t>(load.up) - 1];
 	text += load.max_texels == kMaxTexels ? "" : " --max-texels " + std::to_string(load.max_texels);
 	text += load.pose == Pose::rest ? " --pose rest" : "";
-	for (const std::string& pattern : load.ignore)
-	{
-		text += " --ignore " + shellWord(pattern);
-	}
+	text += joinedText(load.ignore, "", [](const std::string& pattern) { return " --ignore " + shellWord(pattern); });
 	text += load.tr == TrMeaning::automatic ? "" : load.tr == TrMeaning::opacity ? " --tr opacity" : " --tr transparency";
 	return text + (load.strict ? " --strict" : "") + (load.allow_outside ? " --allow-outside" : "");
 }

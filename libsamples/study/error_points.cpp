@@ -2,6 +2,7 @@
 #include "study/error_points.h"
 
 #include "core/content_hash.h"
+#include "core/lists.h"
 #include "core/work_units.h"
 #include "methods/method_table.h"
 #include "shade/gl_context.h"
@@ -29,8 +30,7 @@ constexpr double kTileOfLines_s = 8e-4;  // of tiles made for windows: times cou
 constexpr double kTileOfPoints_s = 1e-2; // times count^2
 constexpr double kElectro_s = 2e-3;      // times count^2
 constexpr double kRay_s = 2e-7;
-constexpr double kLimits_s = 1.3e-4; // of a pixel
-constexpr double kMoved = 0.4;       // of the candidates, which are drawn four times more for their flicker
+constexpr double kMoved = 0.4; // of the candidates, which are drawn four times more for their flicker
 
 double madeOnce(const Candidate& candidate, const ViewCost& view)
 {
@@ -118,18 +118,7 @@ ErrorPoint PointMeasurer::point(ViewBench& on, const Candidate& candidate, int m
 	const std::string hash = hashOf(on, candidate, how, "");
 	ErrorPoint point{
 		candidate.name(), candidate.method(), candidate.origin, candidate.count, candidate.resolution(), {}, {}, false, {}};
-	if (const std::optional<Measurement> known = m_store != nullptr ? m_store->get<Measurement>(hash) : std::nullopt)
-	{
-		m_counts.cached += 1;
-		point.measured = *known;
-		return point;
-	}
-	m_counts.measured += 1;
-	point.measured = on.measure(candidate, how);
-	if (m_store != nullptr)
-	{
-		keepOrFail([&] { m_store->put(hash, point.measured); });
-	}
+	point.measured = known(hash, [&] { return on.measure(candidate, how); });
 	return point;
 }
 
@@ -143,18 +132,7 @@ bool PointMeasurer::mayFlicker(const ErrorPoint& point) const
 double PointMeasurer::flicker(ViewBench& on, const Candidate& candidate)
 {
 	const std::string hash = hashOf(on, candidate, m_measure, "flicker " + std::to_string(m_shifts));
-	if (const std::optional<double> known = m_store != nullptr ? m_store->get<double>(hash) : std::nullopt)
-	{
-		m_counts.cached += 1;
-		return *known;
-	}
-	m_counts.measured += 1;
-	double found = on.flicker(candidate, m_measure, m_shifts);
-	if (m_store != nullptr)
-	{
-		keepOrFail([&] { m_store->put(hash, found); });
-	}
-	return found;
+	return known(hash, [&] { return on.flicker(candidate, m_measure, m_shifts); });
 }
 
 Reference PointMeasurer::reference(const std::string& hash, const std::function<Reference()>& trace)
@@ -185,7 +163,7 @@ std::string PointMeasurer::hashOf(ViewBench& on, const Candidate& candidate, con
 
 ViewCost PointMeasurer::costOf(const ViewBench& on, const LevelBench& bench) const
 {
-	return {bench.contentHash(), on.gbuffer().depth.size(), bench.level().triangles.size(), m_measure.repetitions};
+	return {bench.hash, on.gbuffer().depth.size(), bench.level.triangles.size(), m_measure.repetitions};
 }
 
 std::string sharedBy(const Candidate& candidate, const std::string& level)
@@ -202,18 +180,14 @@ std::string sharedBy(const Candidate& candidate, const std::string& level)
 		   (candidate.shade.volume.paired ? " paired" : "") + (candidate.shade.bands.count > 1 ? " bands" : "");
 }
 
-CandidateCosts::CandidateCosts(std::span<const Candidate> candidates, const ViewCost& view, std::set<std::string>& made)
+std::vector<double> candidateSeconds(std::span<const Candidate> candidates, const ViewCost& view, std::set<std::string>& made)
 {
-	for (const Candidate& candidate : candidates)
+	const auto secondsOf = [&](const Candidate& candidate)
 	{
 		const bool is_first = made.insert(sharedBy(candidate, view.level)).second;
-		m_seconds.push_back(drawn(candidate, view) + (is_first ? madeOnce(candidate, view) : 0.0));
-	}
-}
-
-double limitSeconds(const ViewCost& view)
-{
-	return kLimits_s * static_cast<double>(view.pixels);
+		return drawn(candidate, view) + (is_first ? madeOnce(candidate, view) : 0.0);
+	};
+	return mapped(candidates, secondsOf);
 }
 
 ScreenLimit screenLimitOf(const ViewBench& on, const Draw& draw, const RunSettings& run)

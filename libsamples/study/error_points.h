@@ -36,25 +36,9 @@ struct ViewCost
 	int repetitions = 0;
 };
 
-// Estimates seconds. The first candidate of each name bears what is made once.
-class CandidateCosts
-{
-public:
-	// `made`: the names of views before; grows.
-	CandidateCosts(std::span<const Candidate> candidates, const ViewCost& view, std::set<std::string>& made);
-
-	// Returns an estimate for one thread.
-	double seconds(std::size_t candidate) const
-	{
-		return m_seconds[candidate];
-	}
-
-private:
-	std::vector<double> m_seconds;
-};
-
-// Returns the seconds that the screen-space limit of a view takes.
-double limitSeconds(const ViewCost& view);
+// Estimates of the seconds that each candidate takes on one thread. The first candidate of each name bears what is made once.
+// `made`: the names of views before; grows.
+std::vector<double> candidateSeconds(std::span<const Candidate> candidates, const ViewCost& view, std::set<std::string>& made);
 
 // A result that cannot be kept ends the run, not just the level.
 struct CacheFailure : Error
@@ -100,6 +84,24 @@ public:
 
 private:
 	std::string hashOf(ViewBench& on, const Candidate& candidate, const MeasureSettings& how, const std::string& what) const;
+
+	// The value that the store has, or what `measure` finds, which is kept.
+	template <class Measure> auto known(const std::string& hash, const Measure& measure)
+	{
+		using Value = decltype(measure());
+		if (const std::optional<Value> found = m_store != nullptr ? m_store->get<Value>(hash) : std::nullopt)
+		{
+			m_counts.cached += 1;
+			return *found;
+		}
+		m_counts.measured += 1;
+		const Value made = measure();
+		if (m_store != nullptr)
+		{
+			keepOrFail([&] { m_store->put(hash, made); });
+		}
+		return made;
+	}
 
 	MeasureSettings m_measure;
 	int m_shifts;

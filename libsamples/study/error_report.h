@@ -32,7 +32,7 @@ struct ErrorReportSettings
 	int width_px = 320;    // of each picture
 	int height_px = 180;   //
 	int rays = 1024;       // of the reference, a pixel
-	double radius_m = 0.0; // reach of its rays; 0: radiusFor() each level
+	double radius_m = 0.0; // reach of its rays; 0: suggestedRadius() each level
 	GridSize grid = GridSize::normal;
 	std::vector<std::string> methods; // of the grid, as Candidate::method() names them; empty: all
 	std::vector<Candidate> only;      // measured in place of the grid; empty: the grid
@@ -141,9 +141,6 @@ std::string errorReportCommand(const ErrorReportSettings& settings);
 // A level that fails becomes a line of the report. Throws Error: unsupported where there is no renderer; file where the cache
 // cannot be written.
 ErrorReport measureErrors(const ErrorReportSettings& settings, const RunSettings& run, ErrorReportCounts* counts = nullptr);
-
-// Null where there is none.
-const ErrorPoint* pointNamed(const std::vector<ErrorPoint>& points, const std::string& name);
 
 // Sets `front` of every point and the share.
 void setFront(ErrorView& view);

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <deque>
 #include <map>
 #include <utility>
 
@@ -32,6 +33,14 @@ constexpr int kFitCount = 5; // samples of a tile: more change the recipe by les
 
 // Few steps miss what more of them see: a recipe fitted with four would darken pictures of nine by too much.
 constexpr SliceSettings kFitSlices{.count = 2, .steps = 6};
+
+constexpr std::string_view kStrength = "--strength";
+constexpr std::string_view kPower = "--power";
+
+bool isShape(const RecipeValue& value)
+{
+	return value.feature->option == kStrength || value.feature->option == kPower;
+}
 
 // The search varies positive numbers only, never one that may be 0.
 bool isVaried(const RecipeValue& value)
@@ -160,26 +169,23 @@ double fourPlaces(double error)
 
 nlohmann::ordered_json errorsJson(const FitReport& report, const MethodFit& fit)
 {
-	nlohmann::ordered_json errors = nlohmann::ordered_json::array();
-	for (std::size_t i = 0; i < report.levels.size(); ++i)
+	const auto errorJson = [&](std::size_t i)
 	{
-		errors.push_back({{"level", report.levels[i].name},
-						  {"held_out", report.levels[i].held_out},
-						  {"paper", fourPlaces(fit.errors[i].paper)},
-						  {"rays", fourPlaces(fit.errors[i].rays)}});
-	}
-	return errors;
+		return nlohmann::ordered_json{{"level", report.levels[i].name},
+									  {"held_out", report.levels[i].held_out},
+									  {"paper", fourPlaces(fit.errors[i].paper)},
+									  {"rays", fourPlaces(fit.errors[i].rays)}};
+	};
+	return listOf(report.levels.size(), errorJson);
 }
 
 // Reads the report's levels and says of each what it is; `benches` holds what the views point to.
-std::vector<FitView> readViews(FitReport& report, std::vector<LevelBench>& benches, const LoadSettings& load,
-							   const RunSettings& run)
+std::vector<FitView> readViews(FitReport& report, std::deque<LevelBench>& benches, const LoadSettings& load, const RunSettings& run)
 {
 	const FitSettings& settings = report.settings;
 	const RunSettings whole = withoutUnits(run); // what every part needs
 	const auto samples = std::make_shared<SampleStore>();
 	std::vector<FitView> views;
-	benches.reserve(report.levels.size()); // views point to them
 	ProgressCounter read(run.progress, "levels", countIfSeveral(report.levels.size()));
 	for (std::size_t i = 0; i < report.levels.size(); ++i)
 	{
@@ -189,8 +195,8 @@ std::vector<FitView> readViews(FitReport& report, std::vector<LevelBench>& bench
 		level.name = loaded.level.name;
 		level.files = loaded.level.files;
 		LevelBench& bench = benches.emplace_back(std::move(loaded.level), settings.radius_m, whole, samples);
-		level.radius_m = bench.radiusM();
-		for (const LevelCamera& camera : chooseCameras(bench.tracer(), settings.views, whole))
+		level.radius_m = bench.radius_m;
+		for (const LevelCamera& camera : chooseCameras(bench.tracer, settings.views, whole))
 		{
 			level.views.push_back(camera.name);
 			views.push_back(
@@ -275,8 +281,6 @@ private:
 // Less leaves closed niches bright, for 1 % of the error (a power makes up for it elsewhere).
 constexpr double kLeastStrength = 0.8;
 
-constexpr std::string_view kStrength = "--strength";
-constexpr std::string_view kPower = "--power";
 constexpr std::size_t kBins = 512; // of visibility: half a step of eight bits
 
 double shapedAt(double visibility, const CurveShape& shape)
@@ -312,7 +316,7 @@ FitReport fitRecipes(const std::vector<std::string>& levels, const std::vector<s
 			report.levels.push_back({given, list == &held_out, {}, {}, 0.0, {}});
 		}
 	}
-	std::vector<LevelBench> benches;
+	std::deque<LevelBench> benches;
 	std::vector<FitView> views = readViews(report, benches, load, run);
 	FitSearch search;
 	std::optional<ProgressCounter> fitted(std::in_place, run.progress, "methods", settings.starts.size() * stepsOf(search));
@@ -387,11 +391,6 @@ std::vector<double> fitNumbers(const std::vector<FitNumber>& numbers, const FitS
 std::vector<char> surfacesOf(const GBuffer& gbuffer)
 {
 	return mapped(gbuffer.depth, [](const float depth) { return static_cast<char>(std::isfinite(depth) ? 1 : 0); });
-}
-
-bool isShape(const RecipeValue& value)
-{
-	return value.feature->option == kStrength || value.feature->option == kPower;
 }
 
 CurveShape shapeOf(const MethodRecipe& recipe)

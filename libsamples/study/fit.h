@@ -24,7 +24,7 @@ namespace nook
 struct FitSettings
 {
 	std::vector<MethodRecipe> starts; // one a method
-	double radius_m = 0.0;            // reach of the rays; 0: radiusFor() each level
+	double radius_m = 0.0;            // reach of the rays; 0: suggestedRadius() each level
 	int views = 2;                    // of each level, the most informative ones
 	int width_px = 480;
 	int height_px = 270;
@@ -120,8 +120,6 @@ struct CurveShape
 	double strength = 1.0; // 0.8 to 5
 	double power = 1.0;    // 0.2 to 5
 };
-
-bool isShape(const RecipeValue& value);
 
 // A recipe's shape: 1 where it states none.
 CurveShape shapeOf(const MethodRecipe& recipe);

@@ -2,7 +2,6 @@
 #include "study/measure_view.h"
 
 #include "core/content_hash.h"
-#include "core/decimal.h"
 #include "core/lists.h"
 #include "core/parallel.h"
 #include "core/system.h"
@@ -17,7 +16,6 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <chrono>
 #include <cmath>
@@ -84,15 +82,6 @@ void setTimes(const Shaded& shaded, Measurement& measurement)
 	measurement.total = spreadOf("total", totals);
 }
 
-DrawSettings drawSettings(const MeasureSettings& settings, int repetitions)
-{
-	DrawSettings drawing;
-	drawing.repetitions = repetitions;
-	drawing.gl_device = settings.gl_device;
-	drawing.session = settings.session.get();
-	return drawing;
-}
-
 bool isSlow(const Candidate& candidate)
 {
 	return candidate.kind == CandidateKind::asset && candidate.asset->slow;
@@ -119,17 +108,11 @@ std::string hashOf(const Level& level)
 	hash.items(std::span<const uint32_t>(level.materials));
 	for (const Material& material : level.material_list)
 	{
-		for (const double value : {static_cast<double>(material.alpha_mode), material.cutoff, material.alpha,
-								   static_cast<double>(material.mask), material.two_sided ? 1.0 : 0.0})
-		{
-			hash.add(value);
-		}
+		hash.add(static_cast<int>(material.alpha_mode), material.cutoff, material.alpha, material.mask, material.two_sided);
 	}
 	for (const Mask& mask : level.masks)
 	{
-		hash.add(static_cast<double>(mask.width_px));
-		hash.add(static_cast<double>(mask.wrap_u));
-		hash.add(static_cast<double>(mask.wrap_v));
+		hash.add(mask.width_px, static_cast<int>(mask.wrap_u), static_cast<int>(mask.wrap_v));
 		hash.items(std::span<const uint8_t>(mask.alpha));
 	}
 	return hash.text();
@@ -137,10 +120,31 @@ std::string hashOf(const Level& level)
 
 using SteadyClock = std::chrono::steady_clock;
 
+constexpr double kSlow_s = 0.5;                // a drawing
+constexpr double kBusyShare = 0.1;             // less is the system's own
 constexpr std::chrono::milliseconds kSpin{60}; // a few turns of a scheduler
 constexpr std::chrono::seconds kPause{6};
 
 constexpr int kLeastHeight_px = 64;
+
+// Returns the share of that many processors that other programs take, 0 to 1: keeps all of them busy for 60 ms and compares the
+// time that its threads had. 0 where the system does not tell.
+double takenByOthers(int threads)
+{
+	const auto count = static_cast<std::size_t>(std::max(threads, 1));
+	std::vector<double> had(count); // shares; an item takes a thread for as long as it spins, so each has its own
+	parallelFor(count, threads,
+				[&](std::size_t i)
+				{
+					const double before = threadSeconds();
+					const SteadyClock::time_point start = SteadyClock::now();
+					while (SteadyClock::now() - start < kSpin)
+					{
+					}
+					had[i] = before < 0.0 ? 1.0 : (threadSeconds() - before) / secondsSince(start);
+				});
+	return 1.0 - sumOver(had, [](double share) { return std::clamp(share, 0.0, 1.0); }) / static_cast<double>(count);
+}
 
 } // namespace
 
@@ -163,7 +167,7 @@ struct ViewBench::Data
 {
 	Data(LevelBench& of, const LevelCamera& from, const ViewSettings& given, const RunSettings& how)
 		: level(of), camera(from), settings(given), run(how), timed(silent(how)),
-		  gbuffer(castGBuffer(of.tracer(), viewOf(from, given.width_px, given.height_px), given.width_px, given.height_px,
+		  gbuffer(castGBuffer(of.tracer, viewOf(from, given.width_px, given.height_px), given.width_px, given.height_px,
 							  NormalKind::geometric, how))
 	{
 		surface = mapped(gbuffer.depth, [](float depth) { return static_cast<uint8_t>(std::isfinite(depth) ? 1 : 0); });
@@ -204,7 +208,7 @@ struct ViewBench::Data
 			glm::dmat4 shift(1.0); // of the picture, after the division by w
 			shift[3] = {2.0 * x / gbuffer.width_px, 2.0 * y / gbuffer.height_px, 0.0, 1.0};
 			view.projection = shift * view.projection;
-			moved.push_back(castGBuffer(level.tracer(), view, gbuffer.width_px, gbuffer.height_px, NormalKind::geometric, timed));
+			moved.push_back(castGBuffer(level.tracer, view, gbuffer.width_px, gbuffer.height_px, NormalKind::geometric, timed));
 			for (std::size_t pixel = 0; pixel < surface.size(); ++pixel)
 			{
 				moved_smooth[pixel] = moved_smooth[pixel] != 0 && isAlike(gbuffer, moved.back(), pixel) ? 1 : 0;
@@ -216,10 +220,10 @@ struct ViewBench::Data
 	{
 		ReferenceSettings how;
 		how.falloff = Falloff::linear;
-		how.radius_m = level.radiusM();
+		how.radius_m = level.radius_m;
 		how.rays = rays;
 		how.seed = seed;
-		return referenceOfGBuffer(&level.tracer(), gbuffer, how, trace_run);
+		return referenceOfGBuffer(&level.tracer, gbuffer, how, trace_run);
 	}
 
 	AovShaded drawRays(int rays, int repetitions) const
@@ -243,14 +247,9 @@ struct ViewBench::Data
 		return drawn;
 	}
 
-	AovShaded drawn(const Candidate& candidate, const MeasureSettings& how, int repetitions) const
-	{
-		return drawn(gbuffer, candidate, how, repetitions);
-	}
-
 	AovShaded drawn(const GBuffer& of, const Candidate& candidate, const MeasureSettings& how, int repetitions) const
 	{
-		const DrawSettings drawing = drawSettings(how, repetitions);
+		const DrawSettings drawing{repetitions, how.gl_device, how.session.get()};
 		if (candidate.kind == CandidateKind::rays)
 		{
 			return drawRays(candidate.count, repetitions);
@@ -259,8 +258,8 @@ struct ViewBench::Data
 		{
 			return level.asset(candidate).draw(of, candidate, how.device == Device::gl, timed, drawing);
 		}
-		const ShadeSettings shade = shadeSettingsOf(candidate, level.radiusM());
-		const ShadeSamples& samples = level.samples().samplesOf(candidate, shade, run);
+		const ShadeSettings shade = shadeSettingsOf(candidate, level.radius_m);
+		const ShadeSamples& samples = level.samples->samplesOf(candidate, shade, run);
 		return {how.device == Device::gl ? shadeOnGl(of, samples, shade, drawing) : shadeOnCpu(of, samples, shade, timed, drawing),
 				{}};
 	}
@@ -275,7 +274,7 @@ struct ViewBench::Data
 		const double expected_s = expectedSeconds(
 			[&](int width_px, int height_px)
 			{
-				const GBuffer small = castGBuffer(level.tracer(), viewOf(camera, width_px, height_px), width_px, height_px,
+				const GBuffer small = castGBuffer(level.tracer, viewOf(camera, width_px, height_px), width_px, height_px,
 												  NormalKind::geometric, timed);
 				return drawn(small, candidate, how, 0).shaded.seconds;
 			},
@@ -297,7 +296,7 @@ struct ViewBench::Data
 			try
 			{
 				refuseSlow(best, how);
-				found->second = drawn(best, how, 0).shaded.visibility;
+				found->second = drawn(gbuffer, best, how, 0).shaded.visibility;
 			}
 			catch (const TooSlow&)
 			{
@@ -309,11 +308,6 @@ struct ViewBench::Data
 			}
 		}
 		return found->second;
-	}
-
-	void keepDefinition(const std::string& name, const MeasureSettings& how, const std::vector<float>& visibility)
-	{
-		definitions.emplace(name + (how.device == Device::gl ? " gl" : " cpu"), visibility);
 	}
 
 	double rmseBetween(const std::vector<float>& one, const std::vector<float>& other) const
@@ -395,11 +389,11 @@ ViewErrors ViewBench::errorsOf(const std::vector<float>& visibility) const
 	if (own > 0.0)
 	{
 		errors.best_factor = both / own;
-		std::vector<float> scaled(visibility.size());
-		std::transform(visibility.begin(), visibility.end(), scaled.begin(),
-					   [&](float v)
-					   { return static_cast<float>(std::max(0.0, 1.0 - errors.best_factor * (1.0 - static_cast<double>(v)))); });
-		errors.best_rmse = m_data->rmseBetween(scaled, reference);
+		const auto scaled = [&](float v)
+		{
+			return static_cast<float>(std::max(0.0, 1.0 - errors.best_factor * (1.0 - static_cast<double>(v))));
+		};
+		errors.best_rmse = m_data->rmseBetween(mapped(visibility, scaled), reference);
 	}
 	return errors;
 }
@@ -426,11 +420,11 @@ Measurement ViewBench::measure(const Candidate& candidate, const MeasureSettings
 {
 	m_data->refuseSlow(candidate, settings);
 	int repetitions = isSlow(candidate) ? 0 : settings.repetitions;
-	AovShaded drawn = m_data->drawn(candidate, settings, repetitions);
+	AovShaded drawn = m_data->drawn(m_data->gbuffer, candidate, settings, repetitions);
 	if (isSlow(candidate) && settings.repetitions > 0 && drawn.shaded.seconds < kSlow_s)
 	{
 		repetitions = settings.repetitions;
-		drawn = m_data->drawn(candidate, settings, repetitions);
+		drawn = m_data->drawn(m_data->gbuffer, candidate, settings, repetitions);
 	}
 	Measurement measurement;
 	measurement.candidate = candidate.name();
@@ -448,7 +442,8 @@ Measurement ViewBench::measure(const Candidate& candidate, const MeasureSettings
 	const bool has_definition = candidate.kind == CandidateKind::screen || isSlow(candidate);
 	if (isSlow(candidate) && definitionOf(candidate).name() == measurement.candidate)
 	{
-		m_data->keepDefinition(measurement.candidate, settings, drawn.shaded.visibility); // it is one itself
+		m_data->definitions.emplace(measurement.candidate + (settings.device == Device::gl ? " gl" : " cpu"),
+									drawn.shaded.visibility); // it is one itself
 	}
 	else if (settings.errors && has_definition)
 	{
@@ -496,86 +491,21 @@ std::string ViewBench::contentHash(const Candidate& candidate, const MeasureSett
 						   m_data->run.threads);
 }
 
-double radiusFor(const Level& level)
+LevelBench::LevelBench(Level given, double radius, const RunSettings& run, std::shared_ptr<SampleStore> store, double few)
+	: level(std::move(given)), tracer(level, run), radius_m(radius > 0.0 ? radius : suggestedRadius(level)), hash(hashOf(level)),
+	  samples(store ? std::move(store) : std::make_shared<SampleStore>()), m_run(run), m_few(few)
 {
-	return suggestedRadius(level);
-}
-
-struct LevelBench::Data
-{
-	Data(Level given, double radius, const RunSettings& how, std::shared_ptr<SampleStore> store, double few_split)
-		: level(std::move(given)), tracer(level, how), run(how), radius_m(radius > 0.0 ? radius : radiusFor(level)),
-		  hash(hashOf(level)), samples(store ? std::move(store) : std::make_shared<SampleStore>()), few(few_split)
-	{
-	}
-
-	Level level;
-	Tracer tracer;
-	RunSettings run;
-	double radius_m;
-	std::string hash;
-	std::shared_ptr<SampleStore> samples;
-	double few;
-	std::map<std::string, std::unique_ptr<LevelAsset>> assets; // by key
-};
-
-LevelBench::LevelBench(Level level, double radius_m, const RunSettings& run, std::shared_ptr<SampleStore> samples, double few)
-	: m_data(std::make_shared<Data>(std::move(level), radius_m, run, std::move(samples), few))
-{
-}
-
-const Level& LevelBench::level() const
-{
-	return m_data->level;
-}
-
-const Tracer& LevelBench::tracer() const
-{
-	return m_data->tracer;
-}
-
-double LevelBench::radiusM() const
-{
-	return m_data->radius_m;
-}
-
-const std::string& LevelBench::contentHash() const
-{
-	return m_data->hash;
-}
-
-SampleStore& LevelBench::samples()
-{
-	return *m_data->samples;
 }
 
 LevelAsset& LevelBench::asset(const Candidate& candidate)
 {
 	assert(candidate.kind == CandidateKind::asset);
-	std::unique_ptr<LevelAsset>& made = m_data->assets[candidate.asset->key(candidate)];
+	std::unique_ptr<LevelAsset>& made = m_assets[candidate.asset->key(candidate)];
 	if (!made)
 	{
-		const AssetSource source{m_data->level, m_data->tracer, m_data->radius_m, m_data->few};
-		made = candidate.asset->make(source, candidate, m_data->run);
+		made = candidate.asset->make({level, tracer, radius_m, m_few}, candidate, m_run);
 	}
 	return *made;
-}
-
-double takenByOthers(int threads)
-{
-	const auto count = static_cast<std::size_t>(std::max(threads, 1));
-	std::vector<double> had(count); // shares; an item takes a thread for as long as it spins, so each has its own
-	parallelFor(count, threads,
-				[&](std::size_t i)
-				{
-					const double before = threadSeconds();
-					const SteadyClock::time_point start = SteadyClock::now();
-					while (SteadyClock::now() - start < kSpin)
-					{
-					}
-					had[i] = before < 0.0 ? 1.0 : (threadSeconds() - before) / secondsSince(start);
-				});
-	return 1.0 - sumOver(had, [](double share) { return std::clamp(share, 0.0, 1.0); }) / static_cast<double>(count);
 }
 
 void BusyWatch::look()

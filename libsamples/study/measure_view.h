@@ -27,6 +27,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -103,33 +104,30 @@ struct Measurement
 	std::vector<float> visibility;  // rows from the top; sky 1
 };
 
+// What the views of a level share. Neither copied nor moved: they point to it.
 class LevelBench
 {
 public:
-	// radius_m: reach of the reference's rays (linear falloff); 0: radiusFor(). `samples`: of several levels in one run. `few`: of
-	// its bakes, BakeSettings::few. Throws as Tracer.
-	LevelBench(Level level, double radius_m, const RunSettings& run, std::shared_ptr<SampleStore> samples = nullptr,
-			   double few = 0.0);
-
-	const Level& level() const;
-	const Tracer& tracer() const;
-	double radiusM() const;
-
-	// A hash of the level's triangles, materials and masks.
-	const std::string& contentHash() const;
+	// `radius`: reach of the reference's rays, metres (linear falloff); 0: suggestedRadius(). `store`: of several levels in one
+	// run. `few`: of its bakes, BakeSettings::few. Throws as Tracer.
+	LevelBench(Level given, double radius, const RunSettings& run, std::shared_ptr<SampleStore> store = nullptr, double few = 0.0);
+	LevelBench(const LevelBench&) = delete;
+	LevelBench& operator=(const LevelBench&) = delete;
 
 	// Made at the first call. Requires kind asset; Throws as the kind's maker.
 	LevelAsset& asset(const Candidate& candidate);
 
-	SampleStore& samples();
+	const Level level;
+	const Tracer tracer;
+	const double radius_m;
+	const std::string hash; // of the level's triangles, materials and masks
+	const std::shared_ptr<SampleStore> samples;
 
 private:
-	struct Data;
-	std::shared_ptr<Data> m_data;
+	RunSettings m_run;
+	double m_few;
+	std::map<std::string, std::unique_ptr<LevelAsset>> m_assets; // by key
 };
-
-// A round length: a fortieth of the level's diagonal, at most 1.5 m (AOV §6).
-double radiusFor(const Level& level);
 
 struct ViewSettings
 {
@@ -157,8 +155,6 @@ std::string viewHash(const LevelBench& level, const LevelCamera& camera, const V
 // depends on. 32 hexadecimal digits.
 std::string measurementHash(const std::string& view, const Candidate& candidate, const MeasureSettings& settings, int threads);
 
-inline constexpr double kSlow_s = 0.5;
-
 class ViewBench
 {
 public:
@@ -170,8 +166,8 @@ public:
 	const Reference& reference() const;
 	double surfaceShare() const; // of pixels
 
-	// Times and errors. Volumes that take longer than kSlow_s a drawing are drawn once (repetitions 0). Throws Error: unsupported
-	// where the renderer cannot draw it; TooSlow where that would take longer than slowest_s.
+	// Times and errors. Volumes that take longer than half a second a drawing are drawn once (repetitions 0). Throws Error:
+	// unsupported where the renderer cannot draw it; TooSlow where that would take longer than slowest_s.
 	Measurement measure(const Candidate& candidate, const MeasureSettings& settings);
 
 	// The picture alone, once.
@@ -198,13 +194,6 @@ private:
 };
 
 // How far times can be trusted: how much of the processors other programs take, and how long a picture would take to draw.
-
-// Less is the system's own.
-inline constexpr double kBusyShare = 0.1;
-
-// Returns the share of that many processors that other programs take, 0 to 1: keeps all of them busy for 60 ms and compares the
-// time that its threads had. 0 where the system does not tell.
-double takenByOthers(int threads);
 
 // Looks now and then, so that it takes a hundredth of the time.
 class BusyWatch

@@ -3,12 +3,12 @@
 
 #include "core/content_hash.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "core/text.h"
 #include "methods/feature_table.h"
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <limits>
 
 namespace nook
@@ -48,17 +48,6 @@ double errorFrom(const JsonValue& value)
 	return value.number(0.0, 1e9);
 }
 
-void addMatrix(ContentHash& hash, const glm::dmat4& matrix)
-{
-	for (int column = 0; column < 4; ++column)
-	{
-		for (int row = 0; row < 4; ++row)
-		{
-			hash.add(matrix[column][row]);
-		}
-	}
-}
-
 } // namespace
 
 std::optional<double> optionalNumber(const JsonValue& value)
@@ -91,15 +80,16 @@ ViewErrors errorsFrom(const JsonValue& value)
 
 Json measurementJson(const Measurement& measurement)
 {
-	Json json{{"name", measurement.candidate},         {"renderer", measurement.renderer}, {"repetitions", measurement.repetitions},
-			  {"time", spreadJson(measurement.total)}, {"passes", Json::array()},          {"fragments", measurement.fragments},
-			  {"volumes", measurement.volumes},        {"bytes", measurement.bytes}};
+	Json json{{"name", measurement.candidate},
+			  {"renderer", measurement.renderer},
+			  {"repetitions", measurement.repetitions},
+			  {"time", spreadJson(measurement.total)},
+			  {"passes", mapped(measurement.passes, spreadJson)},
+			  {"fragments", measurement.fragments},
+			  {"volumes", measurement.volumes},
+			  {"bytes", measurement.bytes}};
 	json.update(errorsJson(measurement.errors));
 	json["own_rmse"] = optionalJson(measurement.own_rmse);
-	for (const TimeSpread& pass : measurement.passes)
-	{
-		json["passes"].push_back(spreadJson(pass));
-	}
 	return json;
 }
 
@@ -110,11 +100,7 @@ Measurement measurementFrom(const JsonValue& value)
 	measurement.renderer = value.at("renderer").string();
 	measurement.repetitions = static_cast<int>(value.at("repetitions").integer(0, 1000000));
 	measurement.total = spreadFrom(value.at("time"));
-	const JsonValue passes = value.at("passes");
-	for (std::size_t i = 0; i < passes.arraySize(); ++i)
-	{
-		measurement.passes.push_back(spreadFrom(passes.at(i)));
-	}
+	measurement.passes = value.at("passes").elements(spreadFrom);
 	measurement.fragments = wholeFrom(value.at("fragments"));
 	measurement.volumes = wholeFrom(value.at("volumes"));
 	measurement.bytes = value.has("bytes") ? wholeFrom(value.at("bytes")) : 0; // reports before bakes have none
@@ -127,15 +113,13 @@ std::string viewHash(const LevelBench& level, const LevelCamera& camera, const V
 {
 	ContentHash hash;
 	hash.add(version);
-	hash.add(level.contentHash());
+	hash.add(level.hash);
 	const View view = viewOf(camera, settings.width_px, settings.height_px);
-	addMatrix(hash, view.camera_from_world);
-	addMatrix(hash, view.projection);
-	for (const double value : {static_cast<double>(settings.width_px), static_cast<double>(settings.height_px), level.radiusM(),
-							   static_cast<double>(settings.reference_rays), static_cast<double>(settings.seed)})
+	for (const glm::dmat4& matrix : {view.camera_from_world, view.projection})
 	{
-		hash.add(value);
+		hash.add(std::as_bytes(std::span(&matrix[0][0], 16)));
 	}
+	hash.add(settings.width_px, settings.height_px, level.radius_m, settings.reference_rays, settings.seed);
 	return hash.text();
 }
 
@@ -143,12 +127,8 @@ std::string measurementHash(const std::string& view, const Candidate& candidate,
 {
 	ContentHash hash;
 	hash.add(view);
-	for (const double value :
-		 {candidate.radius_ratio, candidate.thickness_ratio, static_cast<double>(settings.repetitions), settings.errors ? 1.0 : 0.0,
-		  settings.device == Device::gl ? 1.0 : 0.0, static_cast<double>(threads)})
-	{
-		hash.add(value);
-	}
+	hash.add(candidate.radius_ratio, candidate.thickness_ratio, settings.repetitions, settings.errors,
+			 settings.device == Device::gl, threads);
 	for (const FeatureRow& feature : featureTable()) // names have words of some
 	{
 		hash.add(feature.value.get(candidate.shade));

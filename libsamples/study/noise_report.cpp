@@ -45,11 +45,6 @@ bool searches(Method method)
 	return method == Method::refine || method == Method::electro || method == Method::equal || method == Method::lloyd;
 }
 
-bool isAverage(Method method)
-{
-	return method == Method::random || method == Method::poisson;
-}
-
 bool isAllowed(const Recipe& recipe)
 {
 	try
@@ -68,6 +63,24 @@ bool isAffordable(const NoiseRow& row)
 {
 	const bool cells = row.recipe.method == Method::equal || row.recipe.method == Method::lloyd;
 	return !(cells && row.recipe.domain == Domain::ball && row.variant != Variant::free);
+}
+
+// The number of starting sets that a recipe gets when `starts` is 0: the generator's default, cut where the whole report would take
+// too long. 1 for methods that do not search.
+int reportStarts(const Recipe& recipe)
+{
+	if (!searches(recipe.method))
+	{
+		return 1;
+	}
+	const bool chief = recipe.method == Method::refine || recipe.method == Method::electro;
+	const bool many = recipe.count <= 20 || (recipe.count >= 31 && recipe.count <= 35); // around the counts that VO §4.5 names
+	if (recipe.domain == Domain::ball)                                                  // its cells cost ten times a disk's
+	{
+		const bool free = !recipe.centre && !recipe.symmetric;
+		return chief ? (many ? 16 : 4) / (free ? 1 : 2) : 1;
+	}
+	return chief ? (many ? 32 : 4) : 2;
 }
 
 NoiseRow rowFor(const NoiseReportSettings& settings, Domain domain, Variant variant, Method method, int count)
@@ -140,7 +153,7 @@ Quality averageOf(const std::vector<Quality>& samples)
 void measureRow(const NoiseReportSettings& settings, NoiseRow& row)
 {
 	row.pattern = generatePattern(row.recipe);
-	if (!isAverage(row.recipe.method))
+	if (row.recipe.method != Method::random && row.recipe.method != Method::poisson)
 	{
 		row.quality = measurePattern(row.pattern);
 		return;
@@ -163,12 +176,31 @@ double costOf(const NoiseRow& row)
 	return 50.0 + each * std::max(1, row.recipe.starts) * (count + count * count / 8.0);
 }
 
+template <auto kField> std::optional<double> fieldOf(const Quality& quality)
+{
+	return quality.*kField;
+}
+
+// The measures that the page offers.
+struct MeasureField
+{
+	std::string_view name;
+	std::optional<double> (*get)(const Quality& quality);
+};
+constexpr std::array<MeasureField, 7> kMeasures{{{"noise", fieldOf<&Quality::noise>},
+												 {"plane", fieldOf<&Quality::plane>},
+												 {"bias", fieldOf<&Quality::bias>},
+												 {"cliff", fieldOf<&Quality::cliff>},
+												 {"centre", fieldOf<&Quality::centre>},
+												 {"crease", fieldOf<&Quality::crease>},
+												 {"spread", fieldOf<&Quality::spread>}}};
+
 std::vector<NoiseFit> fitTrends(const std::vector<NoiseRow>& rows)
 {
 	std::vector<NoiseFit> fits;
 	for (const Domain domain : {Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere})
 	{
-		for (const MeasureField& measure : measureFields())
+		for (const MeasureField& measure : kMeasures)
 		{
 			std::map<int, double> values;
 			for (const NoiseRow& row : rows)
@@ -186,19 +218,6 @@ std::vector<NoiseFit> fitTrends(const std::vector<NoiseRow>& rows)
 		}
 	}
 	return fits;
-}
-
-template <auto kField> std::optional<double> fieldOf(const Quality& quality)
-{
-	return quality.*kField;
-}
-
-void checkRange(const char* option, int value, int most)
-{
-	if (value < 1 || value > most)
-	{
-		throw Error(ExitCode::usage, std::string(option) + ": expected a whole number from 1 to " + std::to_string(most));
-	}
 }
 
 using Json = nlohmann::ordered_json;
@@ -221,21 +240,18 @@ Json optionalNumber(const std::optional<double>& value)
 
 std::vector<const NoiseRow*> rowsOf(const NoiseReport& report, Domain domain, Variant variant, Method method)
 {
-	std::vector<const NoiseRow*> found;
-	for (const NoiseRow& row : report.rows)
+	const auto isWanted = [&](std::size_t i)
 	{
-		if (row.recipe.domain == domain && row.variant == variant && row.recipe.method == method)
-		{
-			found.push_back(&row);
-		}
-	}
-	return found;
+		const NoiseRow& row = report.rows[i];
+		return row.recipe.domain == domain && row.variant == variant && row.recipe.method == method;
+	};
+	return mapped(indicesWhere(report.rows.size(), isWanted), [&](std::size_t i) { return &report.rows[i]; });
 }
 
 Json measuresJson(const std::vector<const NoiseRow*>& rows)
 {
 	Json measures = Json::object();
-	for (const MeasureField& field : measureFields())
+	for (const MeasureField& field : kMeasures)
 	{
 		if (!field.get(rows.front()->quality))
 		{
@@ -249,10 +265,8 @@ Json measuresJson(const std::vector<const NoiseRow*>& rows)
 
 void addPoints(Json& series, const std::vector<const NoiseRow*>& rows)
 {
-	for (const char* name : {"points", "weights"})
-	{
-		series[name] = Json::array();
-	}
+	series["points"] = Json::array();
+	series["weights"] = Json::array();
 	for (const NoiseRow* row : rows)
 	{
 		Json points = Json::array();
@@ -326,14 +340,14 @@ Json figuresJson(const NoiseReport& report, const std::string& command, const st
 	const NoiseReportSettings& s = report.settings;
 	json["settings"] = {{"max_count", s.max_count}, {"starts", s.starts}, {"random_seeds", s.random_seeds}, {"seed", s.seed}};
 	json["series"] = allSeries(report, with_points);
-	json["fits"] = Json::array();
-	for (const NoiseFit& fit : report.fits)
+	const auto fitJson = [](const NoiseFit& fit)
 	{
-		json["fits"].push_back({{"domain", nameOf(fit.domain)},
-								{"measure", fit.measure},
-								{"factor", rounded(fit.factor)},
-								{"exponent", rounded(fit.exponent)}});
-	}
+		return Json{{"domain", nameOf(fit.domain)},
+					{"measure", fit.measure},
+					{"factor", rounded(fit.factor)},
+					{"exponent", rounded(fit.exponent)}};
+	};
+	json["fits"] = mapped(report.fits, fitJson);
 	return json;
 }
 
@@ -364,12 +378,6 @@ std::string startsText(const NoiseReport& report)
 		}
 	}
 	return text;
-}
-
-std::string leadText(const NoiseReport& report)
-{
-	return "Patterns for line samples, point samples and directions, N = 1 to " + std::to_string(report.settings.max_count) +
-		   ", made by every method and measured over the same half-spaces.";
 }
 
 // Term and explanation.
@@ -416,18 +424,6 @@ std::vector<std::pair<std::string, std::string>> readingText(const NoiseReport& 
 
 } // namespace
 
-std::span<const MeasureField> measureFields()
-{
-	static constexpr std::array<MeasureField, 7> fields{{{"noise", fieldOf<&Quality::noise>},
-														 {"plane", fieldOf<&Quality::plane>},
-														 {"bias", fieldOf<&Quality::bias>},
-														 {"cliff", fieldOf<&Quality::cliff>},
-														 {"centre", fieldOf<&Quality::centre>},
-														 {"crease", fieldOf<&Quality::crease>},
-														 {"spread", fieldOf<&Quality::spread>}}};
-	return fields;
-}
-
 std::optional<PowerFit> fitPower(const std::map<int, double>& values, int first_count)
 {
 	int n = 0;
@@ -456,32 +452,6 @@ std::optional<PowerFit> fitPower(const std::map<int, double>& values, int first_
 	return PowerFit{expOf((sum_y - slope * sum_x) / n), -slope};
 }
 
-int reportStarts(const Recipe& recipe)
-{
-	if (!searches(recipe.method))
-	{
-		return 1;
-	}
-	const bool chief = recipe.method == Method::refine || recipe.method == Method::electro;
-	const bool many = recipe.count <= 20 || (recipe.count >= 31 && recipe.count <= 35); // around the counts that VO §4.5 names
-	if (recipe.domain == Domain::ball)                                                  // its cells cost ten times a disk's
-	{
-		const bool free = !recipe.centre && !recipe.symmetric;
-		return chief ? (many ? 16 : 4) / (free ? 1 : 2) : 1;
-	}
-	return chief ? (many ? 32 : 4) : 2;
-}
-
-void checkNoiseReportSettings(const NoiseReportSettings& settings)
-{
-	checkRange("max-count", settings.max_count, kMaxReportCount);
-	checkRange("seeds", settings.random_seeds, 100);
-	if (settings.starts != 0)
-	{
-		checkRange("starts", settings.starts, 1000);
-	}
-}
-
 std::string noiseReportCommand(const NoiseReportSettings& settings)
 {
 	const NoiseReportSettings plain;
@@ -502,7 +472,6 @@ std::string noiseReportCommand(const NoiseReportSettings& settings)
 
 NoiseReport measureNoise(const NoiseReportSettings& settings, const RunSettings& run)
 {
-	checkNoiseReportSettings(settings);
 	NoiseReport report;
 	report.settings = settings;
 	report.rows = listRows(settings);
@@ -529,9 +498,10 @@ std::string noiseReportJson(const NoiseReport& report, const std::string& comman
 std::string noiseReportHtml(const NoiseReport& report, const std::string& command, const std::string& version)
 {
 	Json data = figuresJson(report, command, version, true);
-	data["lead"] = leadText(report);
-	data["reading"] = readingText(report, command, version);
 	const int most = report.settings.max_count;
+	data["lead"] = "Patterns for line samples, point samples and directions, N = 1 to " + std::to_string(most) +
+				   ", made by every method and measured over the same half-spaces.";
+	data["reading"] = readingText(report, command, version);
 	for (const auto& [name, wanted] :
 		 {std::pair{"selected", std::vector<int>{3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 19, 24, 32, 33, 48, 64}},
 		  std::pair{"compared", std::vector<int>{4, 8, 9, 16, 32, 64}}})

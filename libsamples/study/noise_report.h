@@ -27,16 +27,12 @@ template <> std::span<const std::string_view> namesOf<Variant>();
 struct NoiseReportSettings
 {
 	int max_count = 64;   // counts 1 to this are made, 1 to kMaxReportCount
-	int starts = 0;       // starting sets of every method that searches, 1 to 1000; 0: reportStarts of each
+	int starts = 0;       // starting sets of every method that searches, 1 to 1000; 0: by recipe
 	int random_seeds = 3; // seeds over which `random` and `poisson` are averaged (rms), 1 to 100
 	uint32_t seed = 1;
 };
 
 inline constexpr int kMaxReportCount = 128;
-
-// The number of starting sets the report gives a recipe when `starts` is 0: the generator's default, cut where the whole
-// report would take too long. 1 for methods that do not search.
-int reportStarts(const Recipe& recipe);
 
 // One pattern with its measures. `random` and `poisson` have rms measures over the seeds and the pattern of the first seed.
 struct NoiseRow
@@ -63,16 +59,6 @@ struct NoiseReport
 	std::vector<NoiseFit> fits;
 };
 
-// A measure that the page offers.
-struct MeasureField
-{
-	std::string_view name;
-	std::optional<double> (*get)(const Quality& quality);
-};
-
-// Returns noise, plane, bias, cliff, centre, crease and spread.
-std::span<const MeasureField> measureFields();
-
 struct PowerFit // value ≈ factor · count^−exponent
 {
 	double factor = 0.0;
@@ -82,9 +68,6 @@ struct PowerFit // value ≈ factor · count^−exponent
 // Least squares in logarithms over the counts from `first_count` up. Values up to 2e-5 are zero but for rounding and the grid (the
 // centre error of symmetric patterns, the sphere's bias) and are left out. Absent with fewer than 4 values.
 std::optional<PowerFit> fitPower(const std::map<int, double>& values, int first_count = 4);
-
-// Throws Error (usage) when a setting is out of range; the message names the option (--max-count, --starts, --seeds, --seed).
-void checkNoiseReportSettings(const NoiseReportSettings& settings);
 
 // Returns "nook report noise" with the settings that differ from the defaults, without output files.
 std::string noiseReportCommand(const NoiseReportSettings& settings);

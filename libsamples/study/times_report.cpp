@@ -2,6 +2,7 @@
 #include "study/times_report.h"
 
 #include "core/error.h"
+#include "core/lists.h"
 #include "scene/camera_choice.h"
 #include "scene/load.h"
 #include "shade/gl_context.h"
@@ -37,15 +38,7 @@ std::vector<Candidate> screenCandidates(const TimesSettings& settings)
 											 grid.front().method() + "' or '" + grid.front().name() + "'");
 		}
 	}
-	std::vector<Candidate> candidates;
-	for (std::size_t i = 0; i < grid.size(); ++i)
-	{
-		if (chosen[i])
-		{
-			candidates.push_back(std::move(grid[i]));
-		}
-	}
-	return candidates;
+	return mapped(indicesWhere(grid.size(), [&](std::size_t i) { return chosen[i]; }), [&](std::size_t i) { return grid[i]; });
 }
 
 void compareWithCpu(ViewBench& view, const MeasureSettings& how, TimedPicture& picture)
@@ -104,19 +97,18 @@ TimesReport measureTimes(const TimesSettings& settings, const RunSettings& run)
 	{
 		for (LevelBench& level : levels)
 		{
-			const LevelCamera camera = camerasOf(level.tracer(), "", 0, run).cameras.front();
+			const LevelCamera camera = camerasOf(level.tracer, "", 0, run).cameras.front();
 			ViewBench view(level, camera, {size.x, size.y, 1}, silent(run));
 			for (std::size_t i = 0; i < per_view; ++i)
 			{
-				const std::chrono::duration<double> since = std::chrono::steady_clock::now() - start;
 				progress.finishOne();
-				if (settings.seconds > 0.0 && since.count() > settings.seconds)
+				if (settings.seconds > 0.0 && secondsSince(start) > settings.seconds)
 				{
 					report.left_out += 1;
 					continue;
 				}
 				TimedPicture picture;
-				picture.level = level.level().name;
+				picture.level = level.level.name;
 				picture.size = size;
 				picture.radius_px = settings.radii_px[i / candidates.size()];
 				picture.candidate = candidates[i % candidates.size()];

@@ -23,7 +23,7 @@ struct TimesSettings
 {
 	std::vector<std::string> levels; // files, or "builtin:NAME"; at least one; each from its first camera, or an automatic one
 	std::vector<glm::ivec2> sizes;   // at least one
-	std::vector<double> radii_px;    // at every pixel; 0: by depth, for radiusFor() the level; at least one
+	std::vector<double> radii_px;    // at every pixel; 0: by depth, for suggestedRadius() the level; at least one
 	bool check = false;              // also draws the pictures of the first size on the CPU
 	GridSize grid = GridSize::quick;
 	std::vector<std::string> only; // whole words with which names of candidates begin; empty: all

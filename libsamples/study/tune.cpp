@@ -3,6 +3,7 @@
 
 #include "core/content_hash.h"
 #include "core/error.h"
+#include "core/lists.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "core/work_units.h"
@@ -29,24 +30,137 @@ namespace nook
 namespace
 {
 
+// Volumes that take so long a picture, and so many budgets, are not drawn.
+constexpr double kSlowest_s = 4.0;
+constexpr double kFarOver = 10.0;
+
 // The levels' views at every size that the search asks for, and what measuring costs.
 class TuneBench
 {
 public:
-	TuneBench(TuneReport& report, const RunSettings& run);
+	TuneBench(TuneReport& report, const RunSettings& run)
+		: m_report(report), m_run(run), m_busy(availableThreads()), m_store(run.units != nullptr ? &run.units->store() : nullptr)
+	{
+		m_how.gl_device = m_report.settings.gl_device;
+		m_how.session = std::make_shared<GlSession>(m_how.gl_device);
+		m_how.errors = false;
+		m_how.slowest_s =
+			report.settings.goal.budget_s ? std::max(kSlowest_s, kFarOver * *report.settings.goal.budget_s) : kSlowest_s;
+	}
 
 	// One view of each level after another, so that few views are of many levels.
-	void setViews(const std::vector<std::vector<LevelCamera>>& cameras);
+	void setViews(const std::vector<std::vector<LevelCamera>>& cameras)
+	{
+		for (int k = 0; k < m_report.settings.views; ++k)
+		{
+			for (std::size_t level = 0; level < cameras.size(); ++level)
+			{
+				if (static_cast<std::size_t>(k) < cameras[level].size())
+				{
+					m_views.push_back({level, cameras[level][static_cast<std::size_t>(k)]});
+				}
+			}
+		}
+		ProgressCounter progress(m_run.progress, "views", m_views.size());
+		while (!viewsAreMade(progress))
+		{
+		}
+		for (std::size_t i = 0; i < m_views.size(); ++i)
+		{
+			TuneLevel& level = m_report.levels[m_views[i].level];
+			level.views.push_back(m_views[i].camera.name);
+			level.reference_errors.push_back(benchAt(i, 1.0).reference().error);
+		}
+	}
 
 	std::size_t views() const
 	{
 		return m_views.size();
 	}
 
-	Trial measure(std::size_t index, const Fidelity& fidelity);
+	Trial measure(std::size_t index, const Fidelity& fidelity)
+	{
+		const Candidate& candidate = m_report.candidates[index];
+		m_busy.look();
+		m_report.busy = m_busy.share();
+		MeasureSettings how = m_how;
+		how.repetitions = fidelity.repetitions;
+		Trial trial;
+		// Not where one drawing is all: a pick with a fitted shape is drawn again under its number.
+		const bool once = fidelity.scale == 1.0 && fidelity.repetitions == 1 && m_report.settings.repetitions > 1;
+		for (std::size_t i = 0; i < fidelity.views; ++i)
+		{
+			const auto before = once ? m_once.find({index, i}) : m_once.end();
+			if (before != m_once.end())
+			{
+				trial.views.push_back(before->second);
+				continue;
+			}
+			ViewBench& view = benchAt(i, fidelity.scale);
+			ContentHash hash;
+			hash.add("tune");
+			hash.add(m_report.renderer);
+			hash.add(view.contentHash(candidate, how, m_report.settings.version));
+			const std::string name = hash.text();
+			std::optional<Measurement> found = m_store != nullptr ? m_store->get<Measurement>(name) : std::nullopt;
+			const bool known = found.has_value();
+			(known ? m_report.cached : m_report.measured) += 1;
+			if (!known)
+			{
+				prepare(index, m_views[i].level);
+			}
+			const auto start = std::chrono::steady_clock::now();
+			if (!known)
+			{
+				found = view.measure(candidate, how);
+			}
+			if (const uint64_t most = m_report.settings.max_bytes; most > 0 && found->bytes > most)
+			{
+				throw Error(ExitCode::runtime, "bytes: found " + bytesText(found->bytes) + ", expected at most " + bytesText(most));
+			}
+			const double error = view.errorBy(m_report.settings.measure, found->visibility);
+			trial.cost_s += secondsSince(start);
+			if (!known && m_store != nullptr)
+			{
+				m_store->put(name, *found);
+			}
+			trial.pictures += fidelity.scale * fidelity.scale * (1.0 + fidelity.repetitions);
+			trial.views.push_back(
+				{m_views[i].level, found->total.median_s, found->total.low_s, found->total.high_s, error, found->bytes});
+			if (once)
+			{
+				m_once.emplace(std::pair(index, i), trial.views.back());
+			}
+		}
+		return trial;
+	}
 
 	// Strength and power of a candidate by a recipe, fitted to all views; none where they bring no less error.
-	std::optional<Candidate> withShape(std::size_t index);
+	std::optional<Candidate> withShape(std::size_t index)
+	{
+		ProgressCounter progress(m_run.progress, "shape", m_views.size());
+		Candidate plain = m_report.candidates[index];
+		if (!plain.recipe)
+		{
+			return std::nullopt;
+		}
+		setShape(*plain.recipe, {});
+		std::vector<ShapeView> views;
+		for (std::size_t i = 0; i < m_views.size(); ++i)
+		{
+			ViewBench& view = benchAt(i, 1.0);
+			views.push_back(
+				shapeView(m_views[i].level, view.draw(plain, m_how), view.reference().visibility, surfacesOf(view.gbuffer())));
+			progress.finishOne();
+		}
+		const CurveShape fitted = fitShape(views);
+		if (!(shapedError(views, fitted) < shapedError(views, shapeOf(*m_report.candidates[index].recipe))))
+		{
+			return std::nullopt;
+		}
+		setShape(*plain.recipe, fitted);
+		return plain;
+	}
 
 private:
 	// One camera of one level.
@@ -56,16 +170,88 @@ private:
 		LevelCamera camera;
 	};
 
-	void refuseLarge(const Measurement& found) const;
-	std::string hashOf(const Candidate& candidate, ViewBench& view, const MeasureSettings& how) const;
-
 	// False where a level failed, and its views are gone.
-	bool viewsAreMade(ProgressCounter& progress);
+	bool viewsAreMade(ProgressCounter& progress)
+	{
+		for (std::size_t i = 0; i < m_views.size(); ++i)
+		{
+			const std::size_t level = m_views[i].level;
+			try
+			{
+				benchAt(i, 1.0);
+				progress.finishOne();
+			}
+			catch (const std::exception& problem)
+			{
+				if (m_report.levels.size() == 1)
+				{
+					throw;
+				}
+				m_report.levels[level].failed = problem.what();
+				m_benches.clear(); // they go by the number of a view
+				std::erase_if(m_views, [level](const View& view) { return view.level == level; });
+				return false;
+			}
+		}
+		return true;
+	}
 
-	ViewBench& benchAt(std::size_t view, double scale);
+	ViewBench& benchAt(std::size_t view, double scale)
+	{
+		const TuneSettings& settings = m_report.settings;
+		const std::pair key(view, scale);
+		const auto found = m_benches.find(key);
+		if (found != m_benches.end())
+		{
+			return found->second;
+		}
+		const auto start = std::chrono::steady_clock::now();
+		const auto side = [scale](int pixels)
+		{
+			return std::max(16, static_cast<int>(std::floor(scale * pixels + 0.5)));
+		};
+		ViewSettings how;
+		how.width_px = side(settings.width_px);
+		how.height_px = side(settings.height_px);
+		how.reference_rays = settings.reference_rays;
+		LevelBench& level = *m_report.levels[m_views[view].level].bench;
+		const std::string name = viewHash(level, m_views[view].camera, how, settings.version);
+		const std::optional<Reference> known = m_store != nullptr ? m_store->get<Reference>("reference " + name) : std::nullopt;
+		ViewBench& made = m_benches.emplace(key, ViewBench(level, m_views[view].camera, how, m_run, known)).first->second;
+		if (!known)
+		{
+			const Reference& traced = made.reference(); // now, not while a candidate is timed
+			if (m_store != nullptr)
+			{
+				m_store->put("reference " + name, traced);
+			}
+		}
+		(scale == 1.0 ? m_report.prepared_s : m_report.coarse_s) += secondsSince(start);
+		return made;
+	}
 
 	// Makes what a candidate's first drawing would: samples or volumes, and what the driver keeps of its shaders.
-	void prepare(std::size_t index, std::size_t level);
+	void prepare(std::size_t index, std::size_t level)
+	{
+		const Candidate& candidate = m_report.candidates[index];
+		const double coarsest = m_report.rungs.rungs.front().scale;
+		ViewBench& first = benchAt(0, coarsest);
+		const auto start = std::chrono::steady_clock::now();
+		LevelBench& bench = *m_report.levels[level].bench;
+		if (candidate.kind == CandidateKind::asset)
+		{
+			bench.asset(candidate);
+		}
+		else
+		{
+			bench.samples->samplesOf(candidate, shadeSettingsOf(candidate, bench.radius_m), m_run);
+		}
+		if (m_drawn.insert(index).second)
+		{
+			first.draw(candidate, m_how);
+		}
+		m_report.prepared_s += secondsSince(start);
+	}
 
 	TuneReport& m_report;
 	RunSettings m_run;
@@ -77,218 +263,6 @@ private:
 	std::set<std::size_t> m_drawn;                                   // candidates
 	std::map<std::pair<std::size_t, std::size_t>, ViewTrial> m_once; // of a candidate on a view: drawn once at full size
 };
-
-// Volumes that take so long a picture, and so many budgets, are not drawn.
-constexpr double kSlowest_s = 4.0;
-constexpr double kFarOver = 10.0;
-
-TuneBench::TuneBench(TuneReport& report, const RunSettings& run)
-	: m_report(report), m_run(run), m_busy(availableThreads()), m_store(run.units != nullptr ? &run.units->store() : nullptr)
-{
-	m_how.gl_device = m_report.settings.gl_device;
-	m_how.session = std::make_shared<GlSession>(m_how.gl_device);
-	m_how.errors = false;
-	m_how.slowest_s = report.settings.goal.budget_s ? std::max(kSlowest_s, kFarOver * *report.settings.goal.budget_s) : kSlowest_s;
-}
-
-void TuneBench::setViews(const std::vector<std::vector<LevelCamera>>& cameras)
-{
-	for (int k = 0; k < m_report.settings.views; ++k)
-	{
-		for (std::size_t level = 0; level < cameras.size(); ++level)
-		{
-			if (static_cast<std::size_t>(k) < cameras[level].size())
-			{
-				m_views.push_back({level, cameras[level][static_cast<std::size_t>(k)]});
-			}
-		}
-	}
-	ProgressCounter progress(m_run.progress, "views", m_views.size());
-	while (!viewsAreMade(progress))
-	{
-	}
-	for (std::size_t i = 0; i < m_views.size(); ++i)
-	{
-		TuneLevel& level = m_report.levels[m_views[i].level];
-		level.views.push_back(m_views[i].camera.name);
-		level.reference_errors.push_back(benchAt(i, 1.0).reference().error);
-	}
-}
-
-Trial TuneBench::measure(std::size_t index, const Fidelity& fidelity)
-{
-	const Candidate& candidate = m_report.candidates[index];
-	m_busy.look();
-	m_report.busy = m_busy.share();
-	MeasureSettings how = m_how;
-	how.repetitions = fidelity.repetitions;
-	Trial trial;
-	// Not where one drawing is all: a pick with a fitted shape is drawn again under its number.
-	const bool once = fidelity.scale == 1.0 && fidelity.repetitions == 1 && m_report.settings.repetitions > 1;
-	for (std::size_t i = 0; i < fidelity.views; ++i)
-	{
-		const auto before = once ? m_once.find({index, i}) : m_once.end();
-		if (before != m_once.end())
-		{
-			trial.views.push_back(before->second);
-			continue;
-		}
-		ViewBench& view = benchAt(i, fidelity.scale);
-		const std::string name = hashOf(candidate, view, how);
-		std::optional<Measurement> found = m_store != nullptr ? m_store->get<Measurement>(name) : std::nullopt;
-		const bool known = found.has_value();
-		(known ? m_report.cached : m_report.measured) += 1;
-		if (!known)
-		{
-			prepare(index, m_views[i].level);
-		}
-		const auto start = std::chrono::steady_clock::now();
-		if (!known)
-		{
-			found = view.measure(candidate, how);
-		}
-		refuseLarge(*found);
-		const double error = view.errorBy(m_report.settings.measure, found->visibility);
-		trial.cost_s += secondsSince(start);
-		if (!known && m_store != nullptr)
-		{
-			m_store->put(name, *found);
-		}
-		trial.pictures += fidelity.scale * fidelity.scale * (1.0 + fidelity.repetitions);
-		trial.views.push_back(
-			{m_views[i].level, found->total.median_s, found->total.low_s, found->total.high_s, error, found->bytes});
-		if (once)
-		{
-			m_once.emplace(std::pair(index, i), trial.views.back());
-		}
-	}
-	return trial;
-}
-
-std::optional<Candidate> TuneBench::withShape(std::size_t index)
-{
-	ProgressCounter progress(m_run.progress, "shape", m_views.size());
-	Candidate plain = m_report.candidates[index];
-	if (!plain.recipe)
-	{
-		return std::nullopt;
-	}
-	setShape(*plain.recipe, {});
-	std::vector<ShapeView> views;
-	for (std::size_t i = 0; i < m_views.size(); ++i)
-	{
-		ViewBench& view = benchAt(i, 1.0);
-		views.push_back(
-			shapeView(m_views[i].level, view.draw(plain, m_how), view.reference().visibility, surfacesOf(view.gbuffer())));
-		progress.finishOne();
-	}
-	const CurveShape fitted = fitShape(views);
-	if (!(shapedError(views, fitted) < shapedError(views, shapeOf(*m_report.candidates[index].recipe))))
-	{
-		return std::nullopt;
-	}
-	setShape(*plain.recipe, fitted);
-	return plain;
-}
-
-void TuneBench::refuseLarge(const Measurement& found) const
-{
-	const uint64_t most = m_report.settings.max_bytes;
-	if (most > 0 && found.bytes > most)
-	{
-		throw Error(ExitCode::runtime, "bytes: found " + bytesText(found.bytes) + ", expected at most " + bytesText(most));
-	}
-}
-
-std::string TuneBench::hashOf(const Candidate& candidate, ViewBench& view, const MeasureSettings& how) const
-{
-	ContentHash hash;
-	hash.add(std::string("tune"));
-	hash.add(m_report.renderer);
-	hash.add(view.contentHash(candidate, how, m_report.settings.version));
-	return hash.text();
-}
-
-bool TuneBench::viewsAreMade(ProgressCounter& progress)
-{
-	for (std::size_t i = 0; i < m_views.size(); ++i)
-	{
-		const std::size_t level = m_views[i].level;
-		try
-		{
-			benchAt(i, 1.0);
-			progress.finishOne();
-		}
-		catch (const std::exception& problem)
-		{
-			if (m_report.levels.size() == 1)
-			{
-				throw;
-			}
-			m_report.levels[level].failed = problem.what();
-			m_benches.clear(); // they go by the number of a view
-			std::erase_if(m_views, [level](const View& view) { return view.level == level; });
-			return false;
-		}
-	}
-	return true;
-}
-
-ViewBench& TuneBench::benchAt(std::size_t view, double scale)
-{
-	const TuneSettings& settings = m_report.settings;
-	const std::pair key(view, scale);
-	const auto found = m_benches.find(key);
-	if (found != m_benches.end())
-	{
-		return found->second;
-	}
-	const auto start = std::chrono::steady_clock::now();
-	const auto side = [scale](int pixels)
-	{
-		return std::max(16, static_cast<int>(std::floor(scale * pixels + 0.5)));
-	};
-	ViewSettings how;
-	how.width_px = side(settings.width_px);
-	how.height_px = side(settings.height_px);
-	how.reference_rays = settings.reference_rays;
-	LevelBench& level = *m_report.levels[m_views[view].level].bench;
-	const std::string name = viewHash(level, m_views[view].camera, how, settings.version);
-	const std::optional<Reference> known = m_store != nullptr ? m_store->get<Reference>("reference " + name) : std::nullopt;
-	ViewBench& made = m_benches.emplace(key, ViewBench(level, m_views[view].camera, how, m_run, known)).first->second;
-	if (!known)
-	{
-		const Reference& traced = made.reference(); // now, not while a candidate is timed
-		if (m_store != nullptr)
-		{
-			m_store->put("reference " + name, traced);
-		}
-	}
-	(scale == 1.0 ? m_report.prepared_s : m_report.coarse_s) += secondsSince(start);
-	return made;
-}
-
-void TuneBench::prepare(std::size_t index, std::size_t level)
-{
-	const Candidate& candidate = m_report.candidates[index];
-	const double coarsest = m_report.rungs.rungs.front().scale;
-	ViewBench& first = benchAt(0, coarsest);
-	const auto start = std::chrono::steady_clock::now();
-	LevelBench& bench = *m_report.levels[level].bench;
-	if (candidate.kind == CandidateKind::asset)
-	{
-		bench.asset(candidate);
-	}
-	else
-	{
-		bench.samples().samplesOf(candidate, shadeSettingsOf(candidate, bench.radiusM()), m_run);
-	}
-	if (m_drawn.insert(index).second)
-	{
-		first.draw(candidate, m_how);
-	}
-	m_report.prepared_s += secondsSince(start);
-}
 
 // Sets the strength and the power of the pick to those that suit these levels, as an artist would with sliders.
 void fitPick(TuneReport& report, TuneBench& bench)
@@ -324,17 +298,6 @@ void fitPick(TuneReport& report, TuneBench& bench)
 	}
 }
 
-void readLevel(TuneLevel& level, const LoadSettings& load, double radius_m, const RunSettings& run,
-			   const std::shared_ptr<SampleStore>& samples)
-{
-	LoadedLevel loaded = loadLevel(level.given, load, run);
-	level.name = loaded.level.name;
-	level.files = loaded.level.files;
-	level.triangles = loaded.level.triangles.size();
-	level.bench = std::make_shared<LevelBench>(std::move(loaded.level), radius_m, run, samples);
-	level.radius_m = level.bench->radiusM();
-}
-
 // Returns the cameras of the levels that can be read, and notes why others cannot. Throws where the only level cannot be read.
 std::vector<std::vector<LevelCamera>> readLevels(const std::vector<std::string>& levels, const LoadSettings& load,
 												 const TuneSettings& settings, const RunSettings& run, TuneReport& report)
@@ -349,8 +312,13 @@ std::vector<std::vector<LevelCamera>> readLevels(const std::vector<std::string>&
 		cameras.emplace_back();
 		try
 		{
-			readLevel(level, load, settings.radius_m, run, samples);
-			cameras.back() = chooseCameras(level.bench->tracer(), settings.views, run);
+			LoadedLevel loaded = loadLevel(given, load, run);
+			level.name = loaded.level.name;
+			level.files = loaded.level.files;
+			level.triangles = loaded.level.triangles.size();
+			level.bench = std::make_shared<LevelBench>(std::move(loaded.level), settings.radius_m, run, samples);
+			level.radius_m = level.bench->radius_m;
+			cameras.back() = chooseCameras(level.bench->tracer, settings.views, run);
 		}
 		catch (const std::exception& problem)
 		{
@@ -364,6 +332,18 @@ std::vector<std::vector<LevelCamera>> readLevels(const std::vector<std::string>&
 		stage.finishOne();
 	}
 	return cameras;
+}
+
+// Those that nook emits, in its own forms, and bakes, of the methods that are asked for: names of methods that it emits, or "bake".
+std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::string>& methods)
+{
+	const auto isWanted = [&methods](const Candidate& candidate)
+	{
+		const bool known = candidate.row() != nullptr ? candidate.row()->emitted : candidate.kind == CandidateKind::asset;
+		const bool asked = methods.empty() || std::find(methods.begin(), methods.end(), candidate.method()) != methods.end();
+		return known && asked && (candidate.origin == Origin::ours || candidate.only_form);
+	};
+	return itemsWhere(candidateGrid(grid), isWanted);
 }
 
 // Compares the runner-up's time with the pick's.
@@ -406,21 +386,6 @@ template <> std::span<const std::string_view> namesOf<OverLevels>()
 {
 	static constexpr std::array<std::string_view, 2> kNames{"mean", "worst"};
 	return kNames;
-}
-
-std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::string>& methods)
-{
-	std::vector<Candidate> kept;
-	for (const Candidate& candidate : candidateGrid(grid))
-	{
-		const bool known = candidate.row() != nullptr ? candidate.row()->emitted : candidate.kind == CandidateKind::asset;
-		const bool asked = methods.empty() || std::find(methods.begin(), methods.end(), candidate.method()) != methods.end();
-		if (known && asked && (candidate.origin == Origin::ours || candidate.only_form))
-		{
-			kept.push_back(candidate);
-		}
-	}
-	return kept;
 }
 
 TuneSearchSettings rungsFor(std::size_t views, int repetitions)

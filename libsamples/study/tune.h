@@ -29,7 +29,7 @@ struct TuneSettings
 	ErrorMeasure measure = ErrorMeasure::rmse;
 	GridSize grid = GridSize::normal;
 	std::vector<std::string> methods; // of Candidate::method(); empty: all that can be emitted
-	double radius_m = 0.0;            // reach of the reference's rays; 0: radiusFor() each level
+	double radius_m = 0.0;            // reach of the reference's rays; 0: suggestedRadius() each level
 	int width_px = 1280;
 	int height_px = 720;
 	int views = 4; // of each level, 1 or more: the most informative ones
@@ -73,10 +73,6 @@ struct TuneReport
 
 // The rungs of a search with that many views in all.
 TuneSearchSettings rungsFor(std::size_t views, int repetitions);
-
-// Those that nook emits, in its own forms, and bakes, of the methods that are asked for. Requires names of methods that it emits,
-// or "bake".
-std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::string>& methods);
 
 // Levels that cannot be read or looked at are left out and say why. Throws Error: as the only level's where there is just one;
 // runtime where none of several is left; unsupported without OpenGL.
@@ -136,17 +132,6 @@ struct TuneText
 std::string tuneLines(const TuneReport& report, const TuneText& text);
 
 std::string tuneHtml(const TuneReport& report, const TuneText& text);
-
-// Texts of both the lines and the page.
-struct TuneTexts
-{
-	std::string goal;     // "--budget 1ms"
-	std::string pick;     // its name and figures, or those of what comes nearest; empty: nothing could be drawn
-	std::string measured; // levels, views, what an error is
-	std::string search;
-	std::vector<std::string> failures; // levels and candidates that are not in the figures, and what is wrong with these
-};
-TuneTexts tuneTexts(const TuneReport& report);
 
 // Schema "nook.tune/1".
 std::string tuneJson(const TuneReport& report, const TuneText& text);

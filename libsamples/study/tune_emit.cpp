@@ -2,7 +2,7 @@
 #include "study/tune.h"
 
 #include "core/decimal.h"
-#include "core/error.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "core/text.h"
 #include "emit/module.h"
@@ -78,14 +78,7 @@ private:
 					  {tile_command, m_settings.version, {}, command}),
 			 "its variants for the pixels of a window of " + std::to_string(tile.size) + " × " + std::to_string(tile.size)});
 		m_made.commands.push_back(tile_command + " -o " + kTileFile);
-		method.variants = tile.variants;
-		if (m_candidate.shade.volume.paired)
-		{
-			for (Pattern& variant : method.variants)
-			{
-				variant = pairedPattern(variant);
-			}
-		}
+		method.variants = m_candidate.shade.volume.paired ? mapped(tile.variants, pairedPattern) : tile.variants;
 		return tile_command;
 	}
 

@@ -29,16 +29,6 @@ std::string megabytes(const Tried& tried)
 	return padded(bytes > 0 ? roundedText(1e-6 * static_cast<double>(bytes), 3) : "", 8);
 }
 
-std::string milliseconds(double seconds)
-{
-	return roundedText(1e3 * seconds, 3);
-}
-
-std::vector<std::size_t> front(const TuneReport& report)
-{
-	return frontOf(report.search, report.rungs.once());
-}
-
 // Returns the candidates that were measured at full size on all views, fastest first.
 std::vector<std::size_t> onAllViews(const TuneReport& report)
 {
@@ -139,9 +129,9 @@ std::vector<std::string> failures(const TuneReport& report)
 
 using Json = nlohmann::ordered_json;
 
-Json triedJson(const TuneReport& report, const TuneSearch& search, std::size_t i)
+Json triedJson(const TuneReport& report, std::size_t i)
 {
-	const Tried& tried = search.tried[i];
+	const Tried& tried = report.search.tried[i];
 	const Candidate& candidate = report.candidates[i];
 	Json json{{"candidate", candidate.name()}, {"method", candidate.method()}, {"resolution", candidate.resolution()}};
 	if (!tried.failed.empty())
@@ -153,46 +143,28 @@ Json triedJson(const TuneReport& report, const TuneSearch& search, std::size_t i
 	json["time_ms"] = 1e3 * tried.time_s;
 	json["error"] = tried.error;
 	json["bytes"] = bytesOf(tried.trial);
-	json["views"] = Json::array();
-	for (const ViewTrial& view : tried.trial.views)
+	const auto viewJson = [](const ViewTrial& view)
 	{
-		json["views"].push_back({{"level", view.level},
-								 {"time_ms", 1e3 * view.time_s},
-								 {"low_ms", 1e3 * view.low_s},
-								 {"high_ms", 1e3 * view.high_s},
-								 {"error", view.error},
-								 {"bytes", view.bytes}});
-	}
+		return Json{{"level", view.level},          {"time_ms", 1e3 * view.time_s}, {"low_ms", 1e3 * view.low_s},
+					{"high_ms", 1e3 * view.high_s}, {"error", view.error},          {"bytes", view.bytes}};
+	};
+	json["views"] = mapped(tried.trial.views, viewJson);
 	return json;
-}
-
-Json candidatesJson(const TuneReport& report, const TuneSearch& search)
-{
-	return listOf(report.candidates.size(), [&](std::size_t i) { return triedJson(report, search, i); });
 }
 
 // Levels in the order of the command line.
 Json levelsJson(const TuneReport& report)
 {
-	Json levels = Json::array();
-	for (const TuneLevel& level : report.levels)
+	const auto levelJson = [](const TuneLevel& level) -> Json
 	{
-		Json json{{"given", level.given}};
 		if (!level.failed.empty())
 		{
-			json["failed"] = level.failed;
+			return {{"given", level.given}, {"failed", level.failed}};
 		}
-		else
-		{
-			json["name"] = level.name;
-			json["triangles"] = level.triangles;
-			json["radius_m"] = level.radius_m;
-			json["views"] = level.views;
-			json["reference_errors"] = level.reference_errors;
-		}
-		levels.push_back(json);
-	}
-	return levels;
+		return {{"given", level.given},       {"name", level.name},   {"triangles", level.triangles},
+				{"radius_m", level.radius_m}, {"views", level.views}, {"reference_errors", level.reference_errors}};
+	};
+	return mapped(report.levels, levelJson);
 }
 
 Json emissionJson(const TuneEmission& emission)
@@ -227,13 +199,14 @@ std::string tuneLines(const TuneReport& report, const TuneText& text)
 	lines += joinedText(failures(report), "", [](const std::string& line) { return line + "\n"; });
 	lines += "      ms   spread    " + std::string(nameOf(report.settings.measure)) +
 			 "        MB   candidate (full size, all views; * the front)\n";
-	const std::vector<std::size_t> best = front(report);
+	const std::vector<std::size_t> best = frontOf(report.search, report.rungs.once());
 	for (const std::size_t i : onAllViews(report))
 	{
 		const Tried& tried = report.search.tried[i];
 		const bool on_front = std::find(best.begin(), best.end(), i) != best.end();
-		lines += padded(milliseconds(tried.time_s), 8) + "   " + spreadOf(report, tried) + "  " + fixedText(tried.error, 4) + "  " +
-				 megabytes(tried) + (on_front ? " * " : "   ") + report.candidates[i].name() + "\n";
+		lines += padded(roundedText(1e3 * tried.time_s, 3), 8) + "   " + spreadOf(report, tried) + "  " +
+				 fixedText(tried.error, 4) + "  " + megabytes(tried) + (on_front ? " * " : "   ") + report.candidates[i].name() +
+				 "\n";
 	}
 	if (report.search.pick)
 	{
@@ -248,12 +221,6 @@ std::string tuneLines(const TuneReport& report, const TuneText& text)
 	}
 	lines += searchText(report) + "\n";
 	return lines;
-}
-
-TuneTexts tuneTexts(const TuneReport& report)
-{
-	return {goalText(report.settings), report.search.taken() ? triedText(report, *report.search.taken()) : std::string(),
-			whatWasMeasured(report), searchText(report), failures(report)};
 }
 
 std::string tuneHtml(const TuneReport& report, const TuneText& text)
@@ -289,22 +256,21 @@ std::string tuneJson(const TuneReport& report, const TuneText& text)
 								 {"seconds", report.search.rungs[i].cost_s}});
 	}
 	json["seconds"] = {{"search", report.search.cost_s}, {"prepared", report.prepared_s}, {"coarse", report.coarse_s}};
-	json["pick"] = report.search.pick ? triedJson(report, report.search, *report.search.pick) : Json();
-	json["nearest"] = report.search.nearest ? triedJson(report, report.search, *report.search.nearest) : Json();
+	json["pick"] = report.search.pick ? triedJson(report, *report.search.pick) : Json();
+	json["nearest"] = report.search.nearest ? triedJson(report, *report.search.nearest) : Json();
 	json["instead_of"] = report.search.instead_of ? Json(report.candidates[*report.search.instead_of].name()) : Json();
 	json["busy"] = report.busy;
 	json["runner_up"] = report.runner_up ? comparisonJson(report) : Json();
 	json["confidence"] = confidenceText(report);
 	json["front"] =
 		mapped(frontOf(report.search, report.rungs.once()), [&](const std::size_t i) { return report.candidates[i].name(); });
-	json["candidates"] = candidatesJson(report, report.search);
+	json["candidates"] = listOf(report.candidates.size(), [&](std::size_t i) { return triedJson(report, i); });
 	json["emitted"] = text.emission != nullptr ? emissionJson(*text.emission) : Json();
-	const TuneTexts texts = tuneTexts(report);
-	json["texts"] = {{"goal", texts.goal},
-					 {"pick", texts.pick},
-					 {"measured", texts.measured},
-					 {"search", texts.search},
-					 {"failures", texts.failures}};
+	json["texts"] = {{"goal", goalText(settings)},
+					 {"pick", report.search.taken() ? triedText(report, *report.search.taken()) : ""},
+					 {"measured", whatWasMeasured(report)},
+					 {"search", searchText(report)},
+					 {"failures", failures(report)}};
 	return jsonFile(json);
 }
 

@@ -4,7 +4,6 @@
 // anchors.
 #include "study/tune_search.h"
 
-#include "core/error.h"
 #include "core/lists.h"
 #include "study/front.h"
 
@@ -12,7 +11,6 @@
 #include <cassert>
 #include <cmath>
 #include <exception>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <utility>
@@ -47,7 +45,7 @@ public:
 
 	TuneSearch halve()
 	{
-		std::vector<std::size_t> left = all();
+		std::vector<std::size_t> left = listOf(m_made.tried.size(), [](std::size_t i) { return i; });
 		for (std::size_t rung = 0; rung < m_settings.once() && left.size() > m_settings.least; ++rung)
 		{
 			measureAll(left, rung);
@@ -80,11 +78,6 @@ private:
 	std::size_t last() const
 	{
 		return m_settings.rungs.size() - 1;
-	}
-
-	std::vector<std::size_t> all() const
-	{
-		return listOf(m_made.tried.size(), [](std::size_t i) { return i; });
 	}
 
 	std::string nameOfRung(std::size_t rung) const
@@ -140,8 +133,7 @@ private:
 			measureOne(i, rung);
 			progress.finishOne();
 		}
-		left.erase(std::remove_if(left.begin(), left.end(), [this](std::size_t i) { return !m_made.tried[i].failed.empty(); }),
-				   left.end());
+		std::erase_if(left, [this](std::size_t i) { return !m_made.tried[i].failed.empty(); });
 	}
 
 	// Scales the bounded quantity to what the last rung would find. Times grow with the picture, by less than its pixels, for each
@@ -351,15 +343,8 @@ TuneSearch searchCandidates(std::size_t candidates, const TuneGoal& goal, const 
 
 std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t rung)
 {
-	std::vector<FrontPlace> places;
-	for (const Tried& tried : search.tried)
-	{
-		if (isFrom(tried, rung))
-		{
-			places.push_back({tried.candidate, tried.time_s, tried.error});
-		}
-	}
-	return frontOf(std::move(places));
+	const auto known = itemsWhere(search.tried, [rung](const Tried& tried) { return isFrom(tried, rung); });
+	return frontOf(mapped(known, [](const Tried& tried) { return FrontPlace{tried.candidate, tried.time_s, tried.error}; }));
 }
 
 double timeOf(const Trial& trial, OverLevels over)

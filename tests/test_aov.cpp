@@ -234,7 +234,7 @@ TEST_CASE("aov: two sides darken both, alike", "[aov]")
 	CHECK(under > 0.1);
 	CHECK(evaluator.occlusion({0.2, 1.4, 0.1}, {0, -1, 0}) == Approx(under).epsilon(1e-5));
 	CHECK(evaluator.occlusion({0.2, 1.4, 0.1}, {0, 1, 0}) == 0.0);
-	CHECK(evaluator.maskedVisibility({0.2, 0.6, 0.1}, {0, 1, 0}, 256) == Approx(1.0 - 0.5 * under).margin(0.2));
+	CHECK(evaluator.mask({0.2, 0.6, 0.1}, {0, 1, 0}, 256).visibility == Approx(1.0 - 0.5 * under).margin(0.2));
 }
 
 TEST_CASE("aov: what the tree finds is what every volume says, on any number of threads", "[aov]")
@@ -304,8 +304,8 @@ TEST_CASE("aov-mask: the linear falloff beside a wall, as rays have it", "[aov]"
 	for (const double distance : {0.01, 0.1, 0.3, 0.5, 0.8})
 	{
 		const double expected = raysNextToWall(distance, 1.0);
-		CHECK(1.0 - evaluator.maskedVisibility({distance, 0, 0}, {0, 1, 0}, 256) == Approx(expected).margin(0.02));
-		CHECK(1.0 - evaluator.maskedVisibility({distance, 0, 0}, {0, 1, 0}, 32) == Approx(expected).margin(0.08));
+		CHECK(1.0 - evaluator.mask({distance, 0, 0}, {0, 1, 0}, 256).visibility == Approx(expected).margin(0.02));
+		CHECK(1.0 - evaluator.mask({distance, 0, 0}, {0, 1, 0}, 32).visibility == Approx(expected).margin(0.08));
 	}
 }
 
@@ -334,7 +334,7 @@ TEST_CASE("aov-mask: polygons cover the directions that cross them, but for a fe
 				const double expected = coveredAt(set, at, normal, count);
 				if (expected >= 0.0)
 				{
-					const double found = 1.0 - evaluator.maskedVisibility(at, normal, count);
+					const double found = 1.0 - evaluator.mask(at, normal, count).visibility;
 					CHECK(found == Approx(expected).margin(0.07));
 					off_by += std::fabs(found - expected);
 					covered += expected;
@@ -361,10 +361,10 @@ TEST_CASE("aov-mask: a tessellated wall covers the same directions, and two wall
 	{
 		const glm::dvec3 at(0.025 * i, 0.01 * i, 0.3 - 0.02 * i);
 		const glm::dvec3 normal = glm::normalize(glm::dvec3(-0.3, 1.0, 0.01 * i));
-		const double visibility = of_whole.maskedVisibility(at, normal, 256);
+		const double visibility = of_whole.mask(at, normal, 256).visibility;
 		CHECK(visibility < 1.0);
-		CHECK(of_pieces.maskedVisibility(at, normal, 256) == Approx(visibility).margin(1.5 / 256)); // the table rounds each edge
-		CHECK(of_twice.maskedVisibility(at, normal, 256) == visibility);
+		CHECK(of_pieces.mask(at, normal, 256).visibility == Approx(visibility).margin(1.5 / 256)); // the table rounds each edge
+		CHECK(of_twice.mask(at, normal, 256).visibility == visibility);
 		CHECK((i > 20 || of_twice.occlusion(at, normal) > 1.5 * of_whole.occlusion(at, normal)));
 	}
 }
@@ -379,7 +379,7 @@ TEST_CASE("aov-mask: leaves in front of leaves cover more than one leaf does", "
 	}
 	const double one_layer = 0.25 * 0.97;
 	const VolumeEvaluator evaluator(set, {});
-	const double covered = 1.0 - evaluator.maskedVisibility({0, 0, 0}, {0, 1, 0}, 256);
+	const double covered = 1.0 - evaluator.mask({0, 0, 0}, {0, 1, 0}, 256).visibility;
 	CHECK(covered > 3.0 * one_layer);
 	CHECK(covered == Approx(0.97 * (1.0 - std::pow(0.75, 12))).margin(0.06));
 }

@@ -40,17 +40,14 @@ constexpr std::array<const char*, 3> kTypes{"float", "vec4", "uvec4"};
 constexpr std::array<const char*, 5> kSlots{"nook_cells", "nook_packed", "nook_levels", "nook_tables", "nook_range"};
 
 // Requires the program that was bound last to be in use.
-void setPass(GlPass& program, const glm::ivec4& values, bool floats)
+void setPass(const glm::ivec4& values, bool floats)
 {
-	if (!floats)
-	{
-		program.setIntegers("nook_pass", values);
-		return;
-	}
 	GLint current = 0;
 	glGetIntegerv(GL_CURRENT_PROGRAM, &current);
+	const int place = glGetUniformLocation(static_cast<GLuint>(current), "nook_pass");
 	const glm::vec4 numbers(values);
-	glUniform4f(glGetUniformLocation(static_cast<GLuint>(current), "nook_pass"), numbers.x, numbers.y, numbers.z, numbers.w);
+	floats ? glUniform4f(place, numbers.x, numbers.y, numbers.z, numbers.w)
+		   : glUniform4i(place, values.x, values.y, values.z, values.w);
 }
 
 std::string shaderOf(const ModuleSettings& settings, const std::string& module, PictureFormat format, const std::string& call)
@@ -128,7 +125,7 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 			}
 			program.bindBlock("nook_block", std::as_bytes(std::span(block)));
 			program.bind("nook_depths", depths);
-			setPass(program, modulePassOf(pass.block, pass.kernel.call), settings.float_block);
+			setPass(modulePassOf(pass.block, pass.kernel.call), settings.float_block);
 			program.draw(picture, level, layer);
 		};
 		if (counts != nullptr && pass.level == 0)

@@ -11,6 +11,7 @@
 #include "shade/shade.h"
 
 #include <catch2/catch.hpp>
+#include <epoxy/gl.h>
 
 #include <array>
 #include <cmath>
@@ -20,6 +21,19 @@ using namespace nook::test;
 
 namespace
 {
+
+// Reads a layer of counts.
+std::vector<std::uint32_t> readCounts(const GlTexture& texture, int layer)
+{
+	const PictureShape& shape = texture.shape();
+	std::vector<std::uint32_t> values(4 * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
+	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
+	glBindFramebuffer(GL_FRAMEBUFFER, frame);
+	glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture.name(), 0, layer);
+	glReadPixels(0, 0, shape.width, shape.height, GL_RGBA_INTEGER, GL_UNSIGNED_INT, values.data());
+	checkGlErrors();
+	return values;
+}
 
 // Runs the passes up to the first one named `end`, or all, on one thread. Returns their pictures.
 std::vector<Planes> picturesOf(const GBuffer& gbuffer, const ShadeSettings& settings, const std::string& end)

@@ -398,7 +398,7 @@ TEST_CASE("trim: a receiver beyond the reach gets nothing, one within gets what 
 			// Masks are covered by the same polygons.
 			if (expected == 0.0 && i % 16 == 0)
 			{
-				REQUIRE(of_cut.maskedVisibility(at, toward, 32) == 1.0);
+				REQUIRE(of_cut.mask(at, toward, 32).visibility == 1.0);
 			}
 		}
 	}

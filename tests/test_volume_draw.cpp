@@ -399,11 +399,11 @@ TEST_CASE("compensation: eq. 14 of triples is 0 for the curve that they are made
 {
 	const Compensation paper;
 	const std::vector<TripleValues> triples = triplesOf([&](double sum, Random& /*random*/) { return paper.at(sum); });
-	CHECK(pictureError(paper, triples) == Approx(0.0).margin(1e-12));
-	const double before = pictureError(straight(), triples);
+	CHECK(curveError(paper, triples) == Approx(0.0).margin(1e-12));
+	const double before = curveError(straight(), triples);
 	CHECK(before > 0.1);
 	const Compensation fitted = fitToPictures(straight(), triples);
-	CHECK(pictureError(fitted, triples) < 0.1 * before);
+	CHECK(curveError(fitted, triples) < 0.1 * before);
 	CHECK(std::is_sorted(fitted.occlusion.begin(), fitted.occlusion.end()));
 	CHECK(fitted.occlusion[0] == 0.0);
 	CHECK(fitted.at(0.5) == Approx(paper.at(0.5)).margin(0.02));
@@ -421,7 +421,7 @@ TEST_CASE("compensation: of two curves with the same values, the one with the st
 		}
 	}
 	const Compensation fitted = fitToPictures(straight(), triples);
-	CHECK(pictureError(fitted, triples) < pictureError(straight(), triples));
+	CHECK(curveError(fitted, triples) < curveError(straight(), triples));
 	const double slope = (fitted.at(0.7) - fitted.at(0.3)) / 0.4;
 	CHECK(slope > 0.1);
 	CHECK(slope < 0.6);
@@ -439,7 +439,7 @@ TEST_CASE("compensation: by RMSE it is the values that count, not the steps", "[
 	CHECK(fitted.at(0.6) == Approx(0.3).margin(0.01));
 	const CurveErrors errors = errorsOf(fitted, triples);
 	CHECK(errors.rmse * errors.rmse == Approx(curveError(fitted, triples, CurveMeasure::rmse)));
-	CHECK(errors.eq14 == pictureError(fitted, triples));
+	CHECK(errors.eq14 == curveError(fitted, triples));
 	CHECK(std::fabs(errors.mean) <= errors.rmse);
 	// A curve that is half too dark.
 	CHECK(errorsOf(straight(), triples).mean < -0.1);

@@ -143,35 +143,21 @@ std::string fetchText(const ModuleSettings& settings, const std::string& sampler
 	return "texelFetch(" + (isSeparate(settings) ? combined : sampler) + ", " + place + ", " + level + ")";
 }
 
-// Replaces the first input if depth comes as stored in a depth buffer.
-constexpr Input kDeviceDepth{"nookDepth",
-							 "float",
-							 "NOOK_DEPTH",
-							 "nook_depths",
-							 "NOOK_DEPTHS",
-							 ".r",
-							 1,
-							 "The depth buffer as it is, 0 to 1, of any projection; a pixel at the far plane is sky."};
-
-std::string inputText(const ModuleSettings& settings, const Input& input)
+// `made`: normals are reconstructed from depths.
+std::string inputText(const ModuleSettings& settings, const Input& input, bool made)
 {
 	const std::string macro = input.macro;
 	const std::string value = macro + "(pixel)";
-	const bool device = &input == &kDeviceDepth;
-	return "\n// " + std::string(input.meaning) + "\n// Define " + macro +
-		   "(pixel) before this file to read your own in another way.\n#ifndef " + macro + "\n" +
-		   samplerText(settings, input.binding_macro, input.sampler, input.binding) + "#define " + macro + "(pixel) " +
-		   fetchText(settings, input.sampler, "pixel") + input.channels + "\n#endif\n" + input.type + " " + input.function +
-		   "(ivec2 pixel)\n{\n\treturn " + (device ? "nookLinear(" + value + ")" : value) + ";\n}\n";
-}
-
-// Text that reconstructs normals from depths.
-std::string madeNormalText(const Input& input)
-{
-	const std::string macro = input.macro;
-	return "\n// " + std::string(input.meaning) + "\n// Define " + macro + "(pixel) before this file to read your own.\n#ifndef " +
-		   macro + "\n#define " + macro + "(pixel) " + kNormalFromDepth + "(pixel)\n#endif\n" + input.type + " " + input.function +
-		   "(ivec2 pixel)\n{\n\treturn " + macro + "(pixel);\n}\n";
+	const bool device = settings.device_depth && macro == "NOOK_DEPTH";
+	const std::string fetch =
+		made ? std::string(kNormalFromDepth) + "(pixel)" : fetchText(settings, input.sampler, "pixel") + input.channels;
+	return "\n// " +
+		   std::string(device ? "The depth buffer as it is, 0 to 1, of any projection; a pixel at the far plane is sky."
+							  : input.meaning) +
+		   "\n// Define " + value + " before this file to read your own" + (made ? "" : " in another way") + ".\n#ifndef " + macro +
+		   "\n" + (made ? "" : samplerText(settings, input.binding_macro, input.sampler, input.binding)) + "#define " + value +
+		   " " + fetch + "\n#endif\n" + input.type + " " + input.function + "(ivec2 pixel)\n{\n\treturn " +
+		   (device ? kLinear + ("(" + value + ")") : value) + ";\n}\n";
 }
 
 // A function that fetches a texel, through a macro where the module has macros.
@@ -649,12 +635,14 @@ std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& contex
 	const std::string functions = functionsOf(settings, writer);
 	const auto textOf = [&](const Input& input)
 	{
-		return makes_normals && std::string_view(kNormal) == input.function ? of_normals + madeNormalText(input)
-																			: inputText(settings, input);
+		const bool made = makes_normals && std::string_view(kNormal) == input.function;
+		return (made ? of_normals : "") + inputText(settings, input, made);
 	};
-	std::string inputs = settings.device_depth ? of_device + inputText(settings, kDeviceDepth) : "";
-	inputs += joinedText(std::span(kInputs).subspan(settings.device_depth ? 1 : 0), "",
-						 [&](const Input& input) { return writer.uses(input.function) ? textOf(input) : ""; });
+	const auto isUsed = [&](const Input& input)
+	{
+		return writer.uses(input.function) || (settings.device_depth && &input == &kInputs[0]);
+	};
+	std::string inputs = of_device + joinedText(itemsWhere(kInputs, isUsed), "", textOf);
 	inputs += joinedText(kPassInputs, "",
 						 [&](const PassInput& input) { return writer.uses(input.function) ? passInputText(settings, input) : ""; });
 	const bool whole = settings.main.has_value();

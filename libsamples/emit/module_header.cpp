@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/lists.h"
 #include "core/text.h"
 #include "emit/module.h"
 #include "emit/module_parts.h"
@@ -37,14 +38,6 @@ std::string settingsMacro(const ModuleMethod& method, const std::string& guard_e
 std::string depthNumber(const ModuleSettings& settings)
 {
 	return std::to_string(!settings.device_depth ? 0 : hasUnitClip(settings) ? 2 : 1);
-}
-
-// Several modules' headers may be included in one program; if they read depth differently, the compiler reports it.
-std::string conflictText(const ModuleSettings& settings, const ModuleMethod& method, const std::string& guard_end)
-{
-	const std::string macro = settingsMacro(method, guard_end);
-	return "#if defined(" + macro + ") && " + macro + " != " + depthNumber(settings) +
-		   "\n#error nook: another header with this method reads depth in another way, emit one of them with --namespace\n#endif\n";
 }
 
 // The function that presets the settings of a method.
@@ -121,10 +114,13 @@ std::string moduleHeader(const ModuleSettings& settings, const EmitContext& cont
 	const std::string& space = settings.header_namespace;
 	const std::string guard_end = space.empty() ? "" : "_" + space;
 	std::string tiles;
-	std::string conflicts;
+	std::string conflicts; // headers in one program that read depth differently: the compiler reports it
 	for (const ModuleMethod& method : settings.methods)
 	{
-		conflicts += conflictText(settings, method, guard_end);
+		const std::string macro = settingsMacro(method, guard_end);
+		conflicts += "#if defined(" + macro + ") && " + macro + " != " + depthNumber(settings) +
+					 "\n#error nook: another header with this method reads depth in another way, emit one of them with "
+					 "--namespace\n#endif\n";
 		tiles += settingsText(settings, method, guard_end);
 		tiles += fromTexture(settings, method) ? tileText(method) : "";
 	}
@@ -151,12 +147,9 @@ std::string typeOf(const ModuleSettings& settings, const BlockMember& member)
 
 std::string membersText(const ModuleSettings& settings)
 {
-	std::string text;
-	for (const BlockMember& member : blockMembers())
-	{
-		text += "\t" + typeOf(settings, member) + " " + member.name + "; // " + member.meaning + "\n";
-	}
-	return text;
+	return joinedText(blockMembers(), "",
+					  [&settings](const BlockMember& member)
+					  { return "\t" + typeOf(settings, member) + " " + member.name + "; // " + member.meaning + "\n"; });
 }
 
 std::string withIntegers(const ModuleSettings& settings, const std::string& functions)

@@ -34,9 +34,11 @@ inline bool hasUnitClip(const ModuleSettings& settings)
 }
 
 // Features of a method.
-inline const ShadeSettings& shadeOf(const ModuleSettings& settings, const ModuleMethod& method)
+inline ShadeSettings shadeOf(const ModuleSettings& settings, const ModuleMethod& method)
 {
-	return method.shade ? *method.shade : settings.shade;
+	ShadeSettings shade = method.shade.value_or(settings.shade);
+	shade.method = method.method;
+	return shade;
 }
 
 // Side of the window; 1 for a single pattern.

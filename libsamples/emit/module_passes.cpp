@@ -39,8 +39,7 @@ constexpr std::array kVarying{
 
 ShadePlan planFor(const ModuleSettings& settings, const ModuleMethod& method)
 {
-	ShadeSettings shade = shadeOf(settings, method);
-	shade.method = method.method;
+	const ShadeSettings shade = shadeOf(settings, method);
 	const ShadeFrame any{64, 64}; // no constant depends on the size
 	const ShadeSamples samples =
 		method.variants.empty() ? ownSamples(shade) : samplesOf(method.method, method.variants, layersOf(method));
@@ -166,14 +165,6 @@ std::string plural(int count, const std::string& word)
 	return std::to_string(count) + " " + word + (count == 1 ? "" : "s");
 }
 
-std::string momentsText()
-{
-	return line("nookMoments(texel): levels 0 to 5 of nook_levels, RGBA32F; level 0 has half the size of the depth texture, "
-				"rounded up") +
-		   line("    so that both sides are multiples of 32; nook_pass.x = level; level l > 0 reads level l - 1 of nook_levels;") +
-		   line("    4 depth reads per texel of level 0");
-}
-
 std::string sizeText(const ShadeSettings& shade)
 {
 	return shade.half_resolution ? "half the width and height of the picture, rounded up" : "size of the picture";
@@ -205,7 +196,7 @@ std::string passLines(const ModuleSettings& settings, const ModuleMethod& method
 {
 	const MethodRow& row = rowOf(method.method);
 	const std::string entry = entryOf(row);
-	const ShadeSettings& shade = shadeOf(settings, method);
+	const ShadeSettings shade = shadeOf(settings, method);
 	std::string text;
 	for (const ShadePass& pass : planFor(settings, method).passes)
 	{
@@ -273,8 +264,15 @@ std::string passLines(const ModuleSettings& settings, const ModuleMethod& method
 std::string passesText(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	const MethodRow& row = rowOf(method.method);
-	const ShadeSettings& shade = shadeOf(settings, method);
-	std::string text = row.moments ? momentsText() : "";
+	const ShadeSettings shade = shadeOf(settings, method);
+	std::string text =
+		row.moments
+			? line("nookMoments(texel): levels 0 to 5 of nook_levels, RGBA32F; level 0 has half the size of the depth texture, "
+				   "rounded up") +
+				  line("    so that both sides are multiples of 32; nook_pass.x = level; level l > 0 reads level l - 1 of "
+					   "nook_levels;") +
+				  line("    4 depth reads per texel of level 0")
+			: "";
 	const int levels = row.levels != nullptr ? row.levels(shade) : 0;
 	if (levels > 0)
 	{
@@ -299,7 +297,7 @@ std::string totalText(const ModuleSettings& settings, const ModuleMethod& method
 // "3 samples at each of 3 radii, other ones in each pixel of 4 x 4"
 std::string countsText(const ModuleSettings& settings, const ModuleMethod& method)
 {
-	const ShadeSettings& shade = shadeOf(settings, method);
+	const ShadeSettings shade = shadeOf(settings, method);
 	const ShadePass pass = methodPass(settings, method);
 	std::string text;
 	if (!method.variants.empty() || rowOf(method.method).tile_domain)
@@ -312,12 +310,6 @@ std::string countsText(const ModuleSettings& settings, const ModuleMethod& metho
 	}
 	const int window = windowOf(method);
 	return text + (window > 1 ? ", other ones in each pixel of " + std::to_string(window) + " x " + std::to_string(window) : "");
-}
-
-// The radius and other values of a recipe, as set by nook_..._settings(reach).
-std::string presetsText(const ModuleSettings& settings, const ModuleMethod& method)
-{
-	return joinedText(presetsOf(settings, method), ", ", [](const auto& preset) { return preset.first + " = " + preset.second; });
 }
 
 // The passes, pictures and uniform block of one picture as JSON, for programs that draw emitted modules.
@@ -415,9 +407,7 @@ std::size_t windowOf(const ModuleSettings& settings, const ModuleMethod& method)
 	{
 		return method.variants.size() / static_cast<std::size_t>(layersOf(method));
 	}
-	ShadeSettings shade = method.shade.value_or(settings.shade);
-	shade.method = method.method;
-	const auto side = static_cast<std::size_t>(ownSamples(shade).size);
+	const auto side = static_cast<std::size_t>(ownSamples(shadeOf(settings, method)).size);
 	return side * side;
 }
 
@@ -467,7 +457,7 @@ std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleM
 std::vector<ModulePass> mainPasses(const ModuleSettings& settings)
 {
 	const ModuleMethod& method = settings.methods.front();
-	const ShadeSettings& shade = shadeOf(settings, method);
+	const ShadeSettings shade = shadeOf(settings, method);
 	const ShadePlan plan = planFor(settings, method);
 	std::vector<ModulePass> passes;
 	std::string entry;
@@ -509,9 +499,7 @@ std::string entryOf(const ModuleSettings& settings, const ModuleMethod& method)
 
 bool hasBentNormals(const ModuleSettings& settings, const ModuleMethod& method)
 {
-	ShadeSettings shade = shadeOf(settings, method);
-	shade.method = method.method;
-	return hasBentNormals(shade);
+	return hasBentNormals(shadeOf(settings, method));
 }
 
 std::string settingsMeaning(const ModuleMethod& method)
@@ -564,9 +552,9 @@ std::string introductionOf(const ModuleSettings& settings)
 		text += line("    depth reads per pixel: at most " + std::to_string(depthReadsOf(settings, method, alone)) +
 					 (passes ? "; with all passes below: at most " + totalText(settings, method) : "") +
 					 (row.moments || alone.block.levels > 0 ? " (samples far from the pixel read nook_levels instead)" : ""));
-		text += method.recipe
-					? line("    preset for ray-traced occlusion with rays of the length reach: " + presetsText(settings, method))
-					: "";
+		const auto presets =
+			joinedText(presetsOf(settings, method), ", ", [](const auto& preset) { return preset.first + " = " + preset.second; });
+		text += method.recipe ? line("    preset for ray-traced occlusion with rays of the length reach: " + presets) : "";
 	}
 	for (const ModuleMethod& method : settings.methods)
 	{
@@ -622,16 +610,16 @@ std::string passesJson(const ShadeFrame& frame, const ShadeSamples& samples, con
 	std::vector<uint8_t> bytes((end + 15) / 16 * 16);
 	const ShadeBlock block = blockOf(frame, samples, settings);
 	std::memcpy(bytes.data(), &block, end);
-	PassesJson pictures = PassesJson::array();
-	for (const PictureShape& shape : plan.pictures)
-	{
-		pictures.push_back({{"format", kPictureFormats[static_cast<std::size_t>(shape.format)]},
-							{"width", shape.width},
-							{"height", shape.height},
-							{"levels", shape.levels},
-							{"layers", shape.layers}});
-	}
-	PassesJson passes = mapped(plan.passes, [](const ShadePass& pass) { return passJson(pass); });
+	PassesJson pictures = mapped(plan.pictures,
+								 [](const PictureShape& shape) -> PassesJson
+								 {
+									 return {{"format", kPictureFormats[static_cast<std::size_t>(shape.format)]},
+											 {"width", shape.width},
+											 {"height", shape.height},
+											 {"levels", shape.levels},
+											 {"layers", shape.layers}};
+								 });
+	PassesJson passes = mapped(plan.passes, passJson);
 	PassesJson json{{"schema", "nook.passes/1"}, {"version", version}, {"members", std::move(members)}, {"block", base64Of(bytes)}};
 	if (rowOf(settings.method).domain)
 	{

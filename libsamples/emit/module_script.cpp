@@ -118,15 +118,18 @@ std::string withoutHex(std::string code)
 	return code;
 }
 
+std::string pythonValue(const std::string& value)
+{
+	return value == "true" ? "True" : value == "false" ? "False" : value;
+}
+
 // An object of a struct with its defaults.
 std::string objectOf(const std::string& type, const std::vector<Field>& fields, Tongue tongue)
 {
 	std::string text;
 	for (const Field& field : fields)
 	{
-		const std::string value =
-			tongue == python && field.type == "bool" ? (field.value == "true" ? "True" : "False") : field.value;
-		text += (text.empty() ? "" : ", ") + field.name + (tongue == python ? "=" : ": ") + value;
+		text += (text.empty() ? "" : ", ") + field.name + (tongue == python ? "=" + pythonValue(field.value) : ": " + field.value);
 	}
 	return tongue == javascript ? "{ " + text + " }" : tongue == python ? "SimpleNamespace(" + text + ")" : "new " + type + "()";
 }
@@ -400,10 +403,9 @@ std::string presetLines(const ModuleSettings& settings, const ModuleMethod& meth
 
 std::string reachText(const ModuleSettings& settings, const ModuleMethod& method)
 {
-	std::string text = "\t/**\n\t * " + settingsMeaning(method) +
-					   "\n\t * @param {number} reach\n\t * @returns {Settings}\n\t */\n\tsettings(reach) {\n\t\treturn {\n";
-	text += presetLines(settings, method, "\t\t\t", ": ");
-	return text + "\t\t};\n\t},\n";
+	return "\t/**\n\t * " + settingsMeaning(method) +
+		   "\n\t * @param {number} reach\n\t * @returns {Settings}\n\t */\n\tsettings(reach) {\n\t\treturn {\n" +
+		   presetLines(settings, method, "\t\t\t", ": ") + "\t\t};\n\t},\n";
 }
 
 // The texels of a tile, one per line.
@@ -511,11 +513,6 @@ def fill(projection, **settings):
 			offset += 4
 	return bytes(data)
 )";
-
-std::string pythonValue(const std::string& value)
-{
-	return value == "true" ? "True" : value == "false" ? "False" : value;
-}
 
 } // namespace
 

@@ -169,14 +169,13 @@ std::string keysAndValues(Notes notes)
 
 std::vector<Sample> samplesOf(const Pattern& pattern)
 {
-	std::vector<Sample> samples;
-	for (std::size_t i = 0; i < pattern.count(); ++i)
+	const auto sampleOf = [&pattern](std::size_t i)
 	{
 		const glm::dvec3& p = pattern.points[i];
 		const double third = pattern.domain == Domain::disk ? std::sqrt(std::max(0.0, 1.0 - p.x * p.x - p.y * p.y)) : p.z;
-		samples.push_back({toFloat(p.x), toFloat(p.y), toFloat(third), toFloat(pattern.weights[i])});
-	}
-	return samples;
+		return Sample{toFloat(p.x), toFloat(p.y), toFloat(third), toFloat(pattern.weights[i])};
+	};
+	return listOf(pattern.count(), sampleOf);
 }
 
 const char* columnsOf(Domain domain)
@@ -316,10 +315,9 @@ TileTexture textureOf(const PatternTile& tile, bool layered)
 	}
 	texture.layout = "column = variant = " + variant + (layers > 1 ? ", layer = frame mod " + std::to_string(layers) : "") +
 					 ", row = sample; RGBA = " + columnsOf(tile.domain);
-	for (std::size_t f = 0; f < tile.moves.size(); ++f)
-	{
-		texture.layout += (f == 0 ? "; moves " : " ") + std::to_string(tile.moves[f].x) + "," + std::to_string(tile.moves[f].y);
-	}
+	texture.layout += tile.moves.empty() ? "" : "; moves ";
+	texture.layout +=
+		joinedText(tile.moves, " ", [](const glm::ivec2& move) { return std::to_string(move.x) + "," + std::to_string(move.y); });
 	return texture;
 }
 
@@ -332,12 +330,12 @@ std::string tileExr(const PatternTile& tile, const TileQuality& quality, const E
 std::string tilePng(const PatternTile& tile, const TileQuality& quality, const EmitContext& context)
 {
 	const TileTexture texture = textureOf(tile);
-	std::vector<uint16_t> numbers(texture.rgba.size());
-	for (std::size_t i = 0; i < numbers.size(); ++i)
+	const auto numberOf = [&texture](std::size_t i)
 	{
 		const double share = double{texture.rgba[i]} / double{texture.range[i % 4]};
-		numbers[i] = static_cast<uint16_t>(32768.0 + std::floor(32767.0 * std::clamp(share, -1.0, 1.0) + 0.5));
-	}
+		return static_cast<uint16_t>(32768.0 + std::floor(32767.0 * std::clamp(share, -1.0, 1.0) + 0.5));
+	};
+	const std::vector<uint16_t> numbers = listOf(texture.rgba.size(), numberOf);
 	Notes notes = textureNotes(texture, quality, context);
 	const std::string ranges = joinedText(texture.range, ", ", [](float range) { return floatText(range); });
 	notes.push_back({"Encoding", "value = (v - 32768) / 32767 * range, v = 0 to 65535; range of RGBA = " + ranges});
@@ -352,8 +350,7 @@ std::string tileKtx2(const PatternTile& tile, const TileQuality& quality, const 
 	made.width = static_cast<uint32_t>(texture.width_px);
 	made.height = static_cast<uint32_t>(texture.layer_height_px);
 	made.layers = static_cast<uint32_t>(layers > 1 ? layers : 0);
-	made.notes = notesOf(context, measuresOf(quality));
-	made.notes.push_back({"Layout", texture.layout});
+	made.notes = textureNotes(texture, quality, context);
 	made.notes.push_back({"KTXorientation", "rd"}); // rows from the top
 	made.notes.push_back({"KTXwriter", "nook " + context.version});
 	made.bytes.reserve(4 * texture.rgba.size());

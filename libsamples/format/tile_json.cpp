@@ -99,15 +99,6 @@ TileTransform transformOf(const std::array<double, 4>& n, Domain domain)
 	return t;
 }
 
-std::string transformsJson(const PatternTile& tile)
-{
-	const auto textOf = [&tile](const TileTransform& transform)
-	{
-		return "\n\t\t[" + joinedText(numbersOf(transform, tile.domain), ", ", doubleText) + "]";
-	};
-	return "[" + joinedText(tile.transforms, ",", textOf) + "\n\t]";
-}
-
 TileTransform readTransform(const JsonValue& value, Domain domain)
 {
 	if (value.arraySize() != 4)
@@ -195,13 +186,8 @@ void readVariants(const JsonValue& root, std::size_t count, PatternTile& tile)
 // Returns the sum; throws if negative taps cancel it, which leaves no mean.
 double checkedSum(const JsonValue& taps, const std::vector<double>& numbers)
 {
-	double sum = 0.0;
-	double below = 0.0;
-	for (const double tap : numbers)
-	{
-		sum += tap;
-		below += tap < 0.0 ? -tap : 0.0;
-	}
+	const double sum = sumOver(numbers);
+	const double below = sumOver(numbers, [](double tap) { return tap < 0.0 ? -tap : 0.0; });
 	if (!(sum > below) || sum > 1e9)
 	{
 		taps.fail("taps with the sum " + numberText(sum) + ", " + numberText(-below) + " of it negative",
@@ -228,10 +214,11 @@ std::string tileJson(const PatternTile& tile, const TileRecipe* recipe, const Ti
 	}
 	text += "\t\"domain\": " + jsonText(nameOf(tile.domain)) + ",\n\t\"count\": " + std::to_string(tile.variants.front().count()) +
 			",\n\t\"size\": " + std::to_string(tile.size) + ",\n" + framesJson(tile);
-	if (!tile.transforms.empty())
+	const auto transformText = [&tile](const TileTransform& transform)
 	{
-		text += "\t\"transforms\": " + transformsJson(tile) + ",\n";
-	}
+		return "\n\t\t[" + joinedText(numbersOf(transform, tile.domain), ", ", doubleText) + "]";
+	};
+	text += tile.transforms.empty() ? "" : "\t\"transforms\": [" + joinedText(tile.transforms, ",", transformText) + "\n\t],\n";
 	const auto textOf = [](const Pattern& variant)
 	{
 		return "\n\t\t{\n" + samplesJson(variant, "\t\t\t") + "\n\t\t}";

@@ -3,6 +3,7 @@
 
 #include "core/decimal.h"
 #include "core/error.h"
+#include "core/lists.h"
 #include "core/round.h"
 #include "methods/method_table.h"
 #include "methods/runtime/nook_block.h"
@@ -290,12 +291,9 @@ MemberPlace placeOf(const BlockMember& member, std::size_t end)
 
 std::string membersGlsl(bool all)
 {
-	std::string text;
-	for (const BlockMember& member : blockMembers(all))
-	{
-		text += "\t" + std::string(member.type) + " " + member.name + "; // " + member.meaning + "\n";
-	}
-	return text;
+	return joinedText(blockMembers(all), "",
+					  [](const BlockMember& member)
+					  { return "\t" + std::string(member.type) + " " + member.name + "; // " + member.meaning + "\n"; });
 }
 
 std::map<std::string, std::string> constantsOf(const ShadeBlock& block)

@@ -2,6 +2,7 @@
 #include "methods/kernel_text.h"
 
 #include "core/error.h"
+#include "core/lists.h"
 #include "methods/assets.h"
 
 #include <algorithm>
@@ -281,12 +282,7 @@ bool FunctionWriter::uses(std::string_view name) const
 
 std::string FunctionWriter::credits() const
 {
-	std::string text;
-	for (const std::size_t credit : m_credits)
-	{
-		text += "//\n" + m_kernels.credits[credit];
-	}
-	return text;
+	return joinedText(m_credits, "", [this](std::size_t credit) { return "//\n" + m_kernels.credits[credit]; });
 }
 
 void FunctionWriter::reach(const std::string& name, const std::map<std::string, std::string>& constants,

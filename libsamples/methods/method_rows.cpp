@@ -54,14 +54,9 @@ std::vector<CandidateAxes> axesOfAreas(GridSize size)
 			fittedAxes(size, SampleSource::tile, upTo<int>(size, {3}, {3, 5}, {3, 5, 9}))};
 }
 
-void fillPoints(ShadeBlock& block, const ShadeSettings& /*settings*/)
+template <int extent> void fillExtent(ShadeBlock& block, const ShadeSettings& /*settings*/)
 {
-	block.extent = 1;
-}
-
-void fillAreas(ShadeBlock& block, const ShadeSettings& /*settings*/)
-{
-	block.extent = 2;
+	block.extent = extent;
 }
 
 int volumeDepths(const ShadeSettings& settings)
@@ -150,8 +145,8 @@ std::vector<FeatureRow> sliceOptions()
 	return rows;
 }
 
-// Slices without a tile have a window of 4 × 4 pixels and a count; the kernel computes azimuths and jitters from the position in the
-// window (nookSliceVariant) and reads no values.
+// Slices without a tile have a window of 4 × 4 pixels and a count; the kernel computes azimuths and jitters from the position in
+// the window (nookSliceVariant) and reads no values.
 ShadeSamples sliceSamples(const ShadeSettings& settings)
 {
 	const auto count = static_cast<std::size_t>(settings.slices.count);
@@ -210,7 +205,7 @@ std::vector<MethodRow> volumetricRows()
 		 .kernel = {"vo-point", "nookVoPoint", &Kernels::nookVoPoint},
 		 .sample_depths = volumeDepths,
 		 .tile_binding = 4,
-		 .fill = fillPoints,
+		 .fill = fillExtent<1>,
 		 .samples_view = voSamples()},
 		{.name = "vo-area",
 		 .what = "volumetric obscurance by areas",
@@ -225,7 +220,7 @@ std::vector<MethodRow> volumetricRows()
 		 .sample_depths = volumeDepths,
 		 .tile_binding = 10,
 		 .moments = true,
-		 .fill = fillAreas,
+		 .fill = fillExtent<2>,
 		 .samples_view = voSamples(),
 		 .lod_view = {"lod", "nookDebugLodArea", &Kernels::nookDebugLodArea}},
 	};

@@ -41,18 +41,9 @@ std::span<const MethodRow> methodTable()
 
 template <> std::span<const std::string_view> namesOf<ShadeMethod>()
 {
-	static const std::vector<std::string_view> names = []
-	{
-		std::vector<std::string_view> all;
-		for (const MethodRow& row : methodTable())
-		{
-			if (row.kind == MethodKind::screen)
-			{
-				all.push_back(row.name);
-			}
-		}
-		return all;
-	}();
+	static const std::vector<std::string_view> names =
+		mapped(itemsWhere(methodTable(), [](const MethodRow& row) { return row.kind == MethodKind::screen; }),
+			   [](const MethodRow& row) { return row.name; });
 	return names;
 }
 
@@ -79,15 +70,7 @@ const MethodRow* methodNamed(std::string_view name)
 
 std::string methodNames(const std::function<bool(const MethodRow&)>& fits, const std::string& between)
 {
-	std::string names;
-	for (const MethodRow& row : methodTable())
-	{
-		if (fits(row))
-		{
-			names += (names.empty() ? "" : between) + std::string(row.name);
-		}
-	}
-	return names;
+	return joinedText(itemsWhere(methodTable(), fits), between, [](const MethodRow& row) { return row.name; });
 }
 
 bool hasNoise(const MethodRow& row)

@@ -132,6 +132,36 @@ int wholeOf(const ShadeSettings& settings, std::string_view option)
 	return static_cast<int>(ownValue(settings, option));
 }
 
+// Functions of rows, by the option with their number.
+
+template <Word option> int numberOf(const ShadeSettings& settings)
+{
+	return wholeOf(settings, option.letters);
+}
+
+template <Word option> int twiceNumberOf(const ShadeSettings& settings)
+{
+	return 2 * wholeOf(settings, option.letters);
+}
+
+template <Word option> void setNumber(ShadeSettings& settings, int count)
+{
+	settings.own[option.letters] = count;
+}
+
+// Returns the best count; `steps`: an option with 32 as its best value.
+template <Word option, int count, Word steps> int setBest(ShadeSettings& settings)
+{
+	setNumber<option>(settings, count);
+	setNumber<steps>(settings, 32);
+	return count;
+}
+
+template <Word option> ShadeSamples sliceSamples(const ShadeSettings& settings)
+{
+	return {4, numberOf<option>(settings), sliceDirections(numberOf<option>(settings))};
+}
+
 float narrowOf(const ShadeSettings& settings, std::string_view option)
 {
 	return static_cast<float>(ownValue(settings, option));
@@ -194,23 +224,6 @@ ShadeSamples horizonSamples(const ShadeSettings& settings)
 	return {4, directions, horizonDirections(directions)};
 }
 
-void setDirections(ShadeSettings& settings, int count)
-{
-	settings.own["--hbao-directions"] = count;
-}
-
-int setBestHorizon(ShadeSettings& settings)
-{
-	settings.own["--hbao-steps"] = 32;
-	setDirections(settings, 32);
-	return 32;
-}
-
-int horizonDepths(const ShadeSettings& settings)
-{
-	return wholeOf(settings, "--hbao-steps");
-}
-
 void fillHorizon(ShadeBlock& block, const ShadeSettings& settings)
 {
 	const SinCos bias = sinCosOf(ownValue(settings, "--hbao-angle-bias") * kPi / 180.0);
@@ -247,20 +260,10 @@ ShadeSamples spiralSamples(const ShadeSettings& settings)
 	return {1, count, spiral(count, wholeOf(settings, "--sao-turns"))};
 }
 
-void setSpiral(ShadeSettings& settings, int count)
-{
-	settings.own["--sao-samples"] = count;
-}
-
 int setBestSpiral(ShadeSettings& settings)
 {
-	setSpiral(settings, 256);
+	settings.own["--sao-samples"] = 256;
 	return 256;
-}
-
-int spiralLevels(const ShadeSettings& settings)
-{
-	return wholeOf(settings, "--sao-levels");
 }
 
 void fillSpiral(ShadeBlock& block, const ShadeSettings& settings)
@@ -289,29 +292,6 @@ std::vector<CandidateAxes> publishedSliceAxes(GridSize size)
 	return publishedAxes(SampleSource::own, kFive, upTo<int>(size, {3}, {1, 3}, {1, 2, 3}));
 }
 
-ShadeSamples gtaoSamples(const ShadeSettings& settings)
-{
-	const int slices = wholeOf(settings, "--gtao-slices");
-	return {4, slices, sliceDirections(slices)};
-}
-
-void setGtaoSlices(ShadeSettings& settings, int count)
-{
-	settings.own["--gtao-slices"] = count;
-}
-
-int setBestGtao(ShadeSettings& settings)
-{
-	settings.own["--gtao-steps"] = 32;
-	setGtaoSlices(settings, 16);
-	return 16;
-}
-
-int gtaoDepths(const ShadeSettings& settings)
-{
-	return 2 * wholeOf(settings, "--gtao-steps");
-}
-
 void fillGtao(ShadeBlock& block, const ShadeSettings& settings)
 {
 	block.gtao_falloff = narrowOf(settings, "--gtao-falloff");
@@ -332,29 +312,6 @@ std::vector<FeatureRow> bitmaskOptions()
 			  "of it, or any part")
 		.places = kInShade;
 	return rows;
-}
-
-ShadeSamples bitmaskSamples(const ShadeSettings& settings)
-{
-	const int slices = wholeOf(settings, "--bitmask-slices");
-	return {4, slices, sliceDirections(slices)};
-}
-
-void setBitmaskSlices(ShadeSettings& settings, int count)
-{
-	settings.own["--bitmask-slices"] = count;
-}
-
-int setBestBitmask(ShadeSettings& settings)
-{
-	settings.own["--bitmask-steps"] = 32;
-	setBitmaskSlices(settings, 16);
-	return 16;
-}
-
-int bitmaskDepths(const ShadeSettings& settings)
-{
-	return 2 * wholeOf(settings, "--bitmask-steps");
 }
 
 // A sector counts as covered from half of it (the paper), from the whole, or from 1/1000 (the authors' published sample).
@@ -398,10 +355,10 @@ std::vector<MethodRow> publishedRows()
 		 .options = horizonOptions(),
 		 .axes = horizonAxes,
 		 .own_samples = horizonSamples,
-		 .set_count = setDirections,
-		 .set_best = setBestHorizon,
+		 .set_count = setNumber<"--hbao-directions">,
+		 .set_best = setBest<"--hbao-directions", 32, "--hbao-steps">,
 		 .kernel = {"hbao", "nookHbao", &Kernels::nookHbao},
-		 .sample_depths = horizonDepths,
+		 .sample_depths = numberOf<"--hbao-steps">,
 		 .fill = fillHorizon,
 		 .samples_view = {"samples", "nookDebugSamplesHbao", &Kernels::nookDebugSamplesHbao}},
 		{.name = "sao",
@@ -411,10 +368,10 @@ std::vector<MethodRow> publishedRows()
 		 .options = spiralOptions(),
 		 .axes = spiralAxes,
 		 .own_samples = spiralSamples,
-		 .set_count = setSpiral,
+		 .set_count = setNumber<"--sao-samples">,
 		 .set_best = setBestSpiral,
 		 .kernel = {"sao", "nookSao", &Kernels::nookSao},
-		 .levels = spiralLevels,
+		 .levels = numberOf<"--sao-levels">,
 		 .fill = fillSpiral,
 		 .samples_view = allSamples(),
 		 .lod_view = {"lod", "nookDebugLodSao", &Kernels::nookDebugLodSao},
@@ -425,11 +382,11 @@ std::vector<MethodRow> publishedRows()
 		 .needs_normals = true,
 		 .options = gtaoOptions(),
 		 .axes = publishedSliceAxes,
-		 .own_samples = gtaoSamples,
-		 .set_count = setGtaoSlices,
-		 .set_best = setBestGtao,
+		 .own_samples = sliceSamples<"--gtao-slices">,
+		 .set_count = setNumber<"--gtao-slices">,
+		 .set_best = setBest<"--gtao-slices", 16, "--gtao-steps">,
 		 .kernel = {"gtao", "nookGtao", &Kernels::nookGtao},
-		 .sample_depths = gtaoDepths,
+		 .sample_depths = twiceNumberOf<"--gtao-steps">,
 		 .fill = fillGtao,
 		 .samples_view = allSamples()},
 		{.name = "bitmask",
@@ -438,11 +395,11 @@ std::vector<MethodRow> publishedRows()
 		 .needs_normals = true,
 		 .options = bitmaskOptions(),
 		 .axes = publishedSliceAxes,
-		 .own_samples = bitmaskSamples,
-		 .set_count = setBitmaskSlices,
-		 .set_best = setBestBitmask,
+		 .own_samples = sliceSamples<"--bitmask-slices">,
+		 .set_count = setNumber<"--bitmask-slices">,
+		 .set_best = setBest<"--bitmask-slices", 16, "--bitmask-steps">,
 		 .kernel = {"bitmask", "nookBitmask", &Kernels::nookBitmask},
-		 .sample_depths = bitmaskDepths,
+		 .sample_depths = twiceNumberOf<"--bitmask-steps">,
 		 .fill = fillBitmask,
 		 .samples_view = allSamples()},
 	};

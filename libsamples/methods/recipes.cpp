@@ -6,6 +6,7 @@
 #include "core/file.h"
 #include "core/json_reader.h"
 #include "core/json_text.h"
+#include "core/lists.h"
 #include "methods/assets.h"
 #include "methods/method_table.h"
 
@@ -148,12 +149,8 @@ nlohmann::ordered_json recipeJson(const MethodRecipe& recipe)
 
 std::string recipesFile(const std::vector<MethodRecipe>& recipes, const std::string& version)
 {
-	nlohmann::ordered_json all = nlohmann::ordered_json::array();
-	for (const MethodRecipe& recipe : recipes)
-	{
-		all.push_back(recipeJson(recipe));
-	}
-	return jsonFile(nlohmann::ordered_json{{"format", kRecipesFormat}, {"nook_version", version}, {"recipes", all}});
+	return jsonFile(
+		nlohmann::ordered_json{{"format", kRecipesFormat}, {"nook_version", version}, {"recipes", mapped(recipes, recipeJson)}});
 }
 
 bool holdsRecipes(const std::string& text, const std::string& path)

@@ -275,8 +275,9 @@ int setBestLayers(ShadeSettings& settings)
 
 using T = StatVoSettings;
 
-void addLayers(std::vector<FeatureRow>& rows)
+std::vector<FeatureRow> layerOptions()
 {
+	std::vector<FeatureRow> rows;
 	FeatureRow& layers = addWhole(rows, 0, "--layers", 1, 64, member<&S::statvo, &T::layers>(),
 								  "StatVO: layers of depth, 1, 2 or 4 (default); uniform: 1 to 64");
 	layers.places = kInShade | kInEmit;
@@ -303,10 +304,6 @@ void addLayers(std::vector<FeatureRow>& rows)
 	{
 		return s.statvo.cell_px > 1 ? "cells-" + std::to_string(s.statvo.cell_px) : std::string();
 	};
-}
-
-void addBox(std::vector<FeatureRow>& rows)
-{
 	addNumber(rows, 0, "--slope", 1e-3, 1e3, "per height", member<&S::statvo, &T::slope>(),
 			  "StatVO: how fast surfaces farther in front than the box height stop counting, per height (default 1)");
 	addNumber(rows, 0, "--height", 0.05, 100.0, "radii", member<&S::statvo, &T::height>(),
@@ -322,13 +319,6 @@ void addBox(std::vector<FeatureRow>& rows)
 			  "StatVO, --device gl: sums by compute shaders or by fragments; automatic (default): compute shaders if the "
 			  "GPU supports them")
 		.places = kInShade;
-}
-
-std::vector<FeatureRow> layerOptions()
-{
-	std::vector<FeatureRow> rows;
-	addLayers(rows);
-	addBox(rows);
 	return rows;
 }
 

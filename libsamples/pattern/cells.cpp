@@ -71,13 +71,7 @@ std::vector<std::vector<std::size_t>> possibleNeighbours(const Pattern& pattern)
 	std::vector<std::vector<std::size_t>> lists(count);
 	if (count <= kAllAgainstAll)
 	{
-		for (std::vector<std::size_t>& list : lists)
-		{
-			for (std::size_t j = 0; j < count; ++j)
-			{
-				list.push_back(j);
-			}
-		}
+		lists.assign(count, listOf(count, [](std::size_t j) { return j; }));
 		return lists;
 	}
 	const Cells cells = exactCells(pattern.domain, pattern.points, pattern.powers);
@@ -103,13 +97,12 @@ double powerOf(const Pattern& pattern, std::size_t i)
 
 CellPolygon unitCircle()
 {
-	CellPolygon circle;
-	for (int i = 0; i < kCircleSides; ++i)
+	const auto cornerOf = [](std::size_t i)
 	{
-		const SinCos turn = sinCosOf(2.0 * kPi * i / kCircleSides);
-		circle.emplace_back(turn.cos, turn.sin);
-	}
-	return circle;
+		const SinCos turn = sinCosOf(2.0 * kPi * static_cast<double>(i) / kCircleSides);
+		return glm::dvec2(turn.cos, turn.sin);
+	};
+	return listOf(kCircleSides, cornerOf);
 }
 
 // Power diagram of plane points; reach[i] is the power of point i.
@@ -177,32 +170,21 @@ void appendArc(CellPolygon& outline, const glm::dvec3& a, const glm::dvec3& b)
 
 std::vector<CellPolygon> planeCellPolygons(const Pattern& pattern)
 {
-	std::vector<double> reach(pattern.count());
-	for (std::size_t i = 0; i < reach.size(); ++i)
-	{
-		reach[i] = powerOf(pattern, i);
-	}
-	return powerPolygons(pattern, reach);
+	return powerPolygons(pattern, listOf(pattern.count(), [&](std::size_t i) { return powerOf(pattern, i); }));
 }
 
 std::vector<CellPolygon> sectionPolygons(const Pattern& pattern)
 {
-	std::vector<double> reach(pattern.count());
-	for (std::size_t i = 0; i < reach.size(); ++i)
-	{
-		reach[i] = powerOf(pattern, i) - pattern.points[i].z * pattern.points[i].z;
-	}
-	return powerPolygons(pattern, reach);
+	return powerPolygons(pattern, listOf(pattern.count(), [&](std::size_t i)
+										 { return powerOf(pattern, i) - pattern.points[i].z * pattern.points[i].z; }));
 }
 
 std::vector<CellPolygon> spherePolygons(const Pattern& pattern, const glm::dmat3& view)
 {
 	const std::vector<std::vector<std::size_t>> neighbours = possibleNeighbours(pattern);
-	std::vector<glm::dvec3> scaled; // the cell of i is where scaled_i · x is greatest
-	for (std::size_t i = 0; i < pattern.count(); ++i)
-	{
-		scaled.push_back(expOf(powerOf(pattern, i)) * (pattern.points[i] * view)); // the rows of view
-	}
+	// The cell of i is where scaled_i · x is greatest.
+	const std::vector<glm::dvec3> scaled = listOf(
+		pattern.count(), [&](std::size_t i) -> glm::dvec3 { return expOf(powerOf(pattern, i)) * (pattern.points[i] * view); });
 	std::vector<CellPolygon> outlines(pattern.count());
 	std::vector<glm::dvec3> scratch;
 	for (std::size_t i = 0; i < pattern.count(); ++i)

@@ -74,13 +74,12 @@ struct Sample
 
 inline std::vector<Sample> makeSamples(const Setup& setup, std::span<const glm::dvec3> points, std::span<const double> weights)
 {
-	std::vector<Sample> samples(points.size());
-	for (std::size_t i = 0; i < points.size(); ++i)
+	const auto sampleOf = [&](std::size_t i)
 	{
 		const double a2 = 1.0 - glm::dot(points[i], points[i]);
-		samples[i] = {points[i], setup.lines() && a2 > 0.0 ? std::sqrt(a2) : 0.0, weights[i]};
-	}
-	return samples;
+		return Sample{points[i], setup.lines() && a2 > 0.0 ? std::sqrt(a2) : 0.0, weights[i]};
+	};
+	return listOf(points.size(), sampleOf);
 }
 
 struct RowTerms

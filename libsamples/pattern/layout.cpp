@@ -286,17 +286,16 @@ std::vector<glm::dvec3> vogelPoints(const Layout& layout)
 {
 	const auto count = static_cast<double>(layout.freeCount());
 	const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-	std::vector<glm::dvec3> free;
-	for (std::size_t k = 0; k < layout.freeCount(); ++k)
+	const auto freePoint = [&](std::size_t k)
 	{
 		const auto index = static_cast<double>(k);
 		const double radial = fraction((index + 0.5) * 0.5 * (1.0 + golden)); // only the ball uses it
 		// Vogel's spiral is uniform over the disk, r² = area; the weights account for the lines' measure.
 		const double area = (index + 0.5) / count;
 		const double share = layout.domain() == Domain::disk ? 1.0 - (1.0 - area) * std::sqrt(1.0 - area) : area;
-		free.push_back(pointOf(layout, {share, fraction(index * golden), radial}));
-	}
-	return layout.expand(free);
+		return pointOf(layout, {share, fraction(index * golden), radial});
+	};
+	return layout.expand(listOf(layout.freeCount(), freePoint));
 }
 
 Pattern generatePattern(const Recipe& recipe, const RunSettings& run, const Watch& watch)

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <deque>
+#include <numeric>
 
 namespace nook
 {
@@ -12,12 +13,7 @@ namespace
 
 double dot(std::span<const double> a, std::span<const double> b)
 {
-	double sum = 0.0;
-	for (std::size_t i = 0; i < a.size(); ++i)
-	{
-		sum += a[i] * b[i];
-	}
-	return sum;
+	return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
 struct Pair

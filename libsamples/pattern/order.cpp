@@ -274,27 +274,15 @@ private:
 
 // This work is based on: T. Gonzalez, "Clustering to minimize the maximum intercluster distance", 1985 (farthest-first order).
 
-// A point and its opposite move together: the distance between two such pairs is the smallest between their points.
-class Distances
-{
-public:
-	Distances(const Layout& layout, const Points& free) : m_layout(layout), m_free(free) {}
-
-	double operator()(std::size_t a, std::size_t b) const
-	{
-		const double straight = glm::distance(m_free[a], m_free[b]);
-		return m_layout.symmetric() ? std::min(straight, glm::distance(m_free[a], -m_free[b])) : straight;
-	}
-
-private:
-	const Layout& m_layout;
-	const Points& m_free;
-};
-
 // Each next point is the one farthest from all previous ones; the first is nearest to the centre.
 std::vector<std::size_t> farthestFirst(const Layout& layout, const Points& free)
 {
-	const Distances distance(layout, free);
+	// A point and its opposite move together: the distance between two such pairs is the smallest between their points.
+	const auto distance = [&](std::size_t a, std::size_t b)
+	{
+		const double straight = glm::distance(free[a], free[b]);
+		return layout.symmetric() ? std::min(straight, glm::distance(free[a], -free[b])) : straight;
+	};
 	const glm::dvec3 middle(0.0, 0.0, isDirectional(layout.domain()) ? 1.0 : 0.0);
 	std::vector<double> gap(free.size());
 	std::size_t next = 0;

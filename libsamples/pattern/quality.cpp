@@ -318,32 +318,17 @@ double errorBehind(const PatternTile& tile, const std::vector<TileShares>& share
 	{
 		addShares(mean, one, 1.0 / static_cast<double>(shares.size()));
 	}
-	std::vector<glm::dvec3> points;
-	std::vector<double> weights;
-	for (const Pattern& variant : tile.variants)
-	{
-		points.insert(points.end(), variant.points.begin(), variant.points.end());
-		weights.insert(weights.end(), variant.weights.begin(), variant.weights.end());
-	}
+	const Pattern all = unionOf(tile, 1.0);
 	ProgressCounter progress(run.progress, "pairs", mean.pairs.size());
-	return std::sqrt(std::max(0.0, tileSquaredError(tile.domain, mean, points, weights, nullptr, run.threads, &progress)));
+	return std::sqrt(std::max(0.0, tileSquaredError(tile.domain, mean, all.points, all.weights, nullptr, run.threads, &progress)));
 }
 
 TileQuality measureTile(const PatternTile& tile, const Pattern& base, const RunSettings& run)
 {
 	TileQuality quality;
 	const auto count = static_cast<double>(tile.variants.front().count());
-	Pattern whole;
-	whole.domain = tile.domain;
 	const auto variants = static_cast<double>(tile.variants.size());
-	for (const Pattern& variant : tile.variants)
-	{
-		whole.points.insert(whole.points.end(), variant.points.begin(), variant.points.end());
-		for (const double w : variant.weights)
-		{
-			whole.weights.push_back(w / variants);
-		}
-	}
+	const Pattern whole = unionOf(tile, variants);
 	if (variants * count * count <= kQuickSteps)
 	{
 		double mean_square = 0.0;

@@ -48,35 +48,22 @@ template <> std::span<const std::string_view> namesOf<Order>()
 namespace
 {
 
-[[noreturn]] void refuse(const std::string& message)
-{
-	throw Error(ExitCode::usage, message);
-}
-
-void refuseIf(bool condition, const char* message)
+void refuseIf(bool condition, const std::string& message)
 {
 	if (condition)
 	{
-		refuse(message);
+		throw Error(ExitCode::usage, message);
 	}
 }
 
 void checkRange(const char* option, double value, double least, double most, const char* range)
 {
-	if (!(value >= least && value <= most))
-	{
-		refuse(std::string(option) + ": expected " + range);
-	}
-}
-
-bool relaxes(Method method)
-{
-	return method == Method::electro || method == Method::lloyd;
+	refuseIf(!(value >= least && value <= most), std::string(option) + ": expected " + range);
 }
 
 bool usesStarts(Method method)
 {
-	return relaxes(method) || method == Method::refine || method == Method::equal;
+	return method == Method::electro || method == Method::lloyd || method == Method::refine || method == Method::equal;
 }
 
 } // namespace
@@ -139,46 +126,19 @@ std::string patternCommand(const Recipe& recipe)
 	const Recipe plain;
 	std::string command =
 		"nook pattern --domain " + std::string(nameOf(recipe.domain)) + " --count " + std::to_string(recipe.count);
-	const auto option = [&](const char* name, const std::string& value)
+	const auto add = [&command](bool differs, const std::string& option, const std::string& value)
 	{
-		command += std::string(" ") + name + " " + value;
+		command += differs ? option + value : "";
 	};
-	if (recipe.centre)
-	{
-		command += " --centre";
-	}
-	if (recipe.symmetric)
-	{
-		command += " --symmetric";
-	}
-	if (recipe.method != plain.method)
-	{
-		option("--method", std::string(nameOf(recipe.method)));
-	}
-	if (recipe.minimise != plain.minimise)
-	{
-		option("--minimise", std::string(nameOf(recipe.minimise)));
-	}
-	if (recipe.weights != plain.weights)
-	{
-		option("--weights", std::string(nameOf(recipe.weights)));
-	}
-	if (recipe.order != plain.order)
-	{
-		option("--order", std::string(nameOf(recipe.order)));
-	}
-	if (recipe.starts != plain.starts)
-	{
-		option("--starts", std::to_string(recipe.starts));
-	}
-	if (recipe.seed != plain.seed)
-	{
-		option("--seed", std::to_string(recipe.seed));
-	}
-	if (recipe.exponent != plain.exponent)
-	{
-		option("--exponent", numberText(recipe.exponent));
-	}
+	add(recipe.centre, " --centre", "");
+	add(recipe.symmetric, " --symmetric", "");
+	add(recipe.method != plain.method, " --method ", std::string(nameOf(recipe.method)));
+	add(recipe.minimise != plain.minimise, " --minimise ", std::string(nameOf(recipe.minimise)));
+	add(recipe.weights != plain.weights, " --weights ", std::string(nameOf(recipe.weights)));
+	add(recipe.order != plain.order, " --order ", std::string(nameOf(recipe.order)));
+	add(recipe.starts != plain.starts, " --starts ", std::to_string(recipe.starts));
+	add(recipe.seed != plain.seed, " --seed ", std::to_string(recipe.seed));
+	add(recipe.exponent != plain.exponent, " --exponent ", numberText(recipe.exponent));
 	return command;
 }
 

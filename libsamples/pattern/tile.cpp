@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -38,14 +39,8 @@ std::string tileCommandOn(const TileRecipe& recipe, const std::string& base)
 {
 	const TileRecipe plain;
 	std::string command = "nook tile " + base + " --size " + std::to_string(recipe.size);
-	if (recipe.kind != plain.kind)
-	{
-		command += " --kind " + std::string(nameOf(recipe.kind));
-	}
-	if (recipe.lambda != plain.lambda)
-	{
-		command += " --lambda " + numberText(recipe.lambda);
-	}
+	command += recipe.kind != plain.kind ? " --kind " + std::string(nameOf(recipe.kind)) : "";
+	command += recipe.lambda != plain.lambda ? " --lambda " + numberText(recipe.lambda) : "";
 	for (const TileFilter& filter : recipe.filters)
 	{
 		command += " --filter " + filter.name + (filter.share != 1.0 ? "@" + numberText(filter.share) : "");
@@ -54,24 +49,13 @@ std::string tileCommandOn(const TileRecipe& recipe, const std::string& base)
 	command += recipe.frames > 1 ? " --frames " + std::to_string(recipe.frames) + " --ema " + numberText(recipe.ema) : "";
 	command += recipe.moves ? " --moves" : "";
 	command += recipe.progressive ? " --progressive" : "";
-	if (recipe.starts != plain.starts)
-	{
-		command += " --starts " + std::to_string(recipe.starts);
-	}
-	if (recipe.seed != plain.seed)
-	{
-		command += " --seed " + std::to_string(recipe.seed);
-	}
+	command += recipe.starts != plain.starts ? " --starts " + std::to_string(recipe.starts) : "";
+	command += recipe.seed != plain.seed ? " --seed " + std::to_string(recipe.seed) : "";
 	return command;
 }
 
 // Memory per sample of the finished tile, its measurement and its text, measured: docs/measurements/patterns.md.
 constexpr uint64_t kFinishedBytes = 400;
-
-uint64_t samplesOf(const TileRecipe& recipe, std::size_t count)
-{
-	return static_cast<uint64_t>(recipe.size * recipe.size * (recipe.moves ? 1 : recipe.frames)) * count;
-}
 
 TileTime timeOf(const TileRecipe& recipe)
 {
@@ -155,17 +139,11 @@ PatternTile repeated(const PatternTile& small, int size)
 // The squared error to be minimised, without the single variants' part: exact when it is reported, else approximate.
 double seenError(const PatternTile& tile, const TileShares& seen, int threads)
 {
-	Points points;
-	std::vector<double> weights;
-	for (const Pattern& variant : tile.variants)
-	{
-		points.insert(points.end(), variant.points.begin(), variant.points.end());
-		weights.insert(weights.end(), variant.weights.begin(), variant.weights.end());
-	}
+	const Pattern all = unionOf(tile, 1.0);
 	EnergyGradient unused;
 	return stepsOfError(seen, tile.variants.front().count()) <= kMaxShareSteps
-			   ? tileSquaredError(tile.domain, seen, points, weights, nullptr, threads)
-			   : TileMoments(tile.domain, seen)(points, weights, unused, threads);
+			   ? tileSquaredError(tile.domain, seen, all.points, all.weights, nullptr, threads)
+			   : TileMoments(tile.domain, seen)(all.points, all.weights, unused, threads);
 }
 
 // The best tile made of copies of a smaller one; none if there is no smaller one.
@@ -220,6 +198,19 @@ PatternTile descendedTile(const Pattern& base, const TileRecipe& recipe, const s
 }
 
 } // namespace
+
+Pattern unionOf(const PatternTile& tile, double divisor)
+{
+	Pattern all;
+	all.domain = tile.domain;
+	for (const Pattern& variant : tile.variants)
+	{
+		all.points.insert(all.points.end(), variant.points.begin(), variant.points.end());
+		std::transform(variant.weights.begin(), variant.weights.end(), std::back_inserter(all.weights),
+					   [divisor](double w) { return w / divisor; });
+	}
+	return all;
+}
 
 double lambdaOf(const TileRecipe& recipe)
 {
@@ -326,7 +317,7 @@ int variantOfFrame(const PatternTile& tile, int frame)
 uint64_t tileMemory(const TileRecipe& recipe, const Pattern& base, int threads)
 {
 	constexpr uint64_t kProgram = uint64_t{20} << 20U; // huge pages round each heap up to 2 MiB
-	return kProgram + std::max(pointsMemory(base, recipe, threads), samplesOf(recipe, base.count()) * kFinishedBytes);
+	return kProgram + std::max(pointsMemory(base, recipe, threads), variantsOf(recipe) * base.count() * kFinishedBytes);
 }
 
 void checkTileSize(const TileRecipe& recipe, const Pattern& base, uint64_t memory_bytes, int threads)
@@ -334,14 +325,14 @@ void checkTileSize(const TileRecipe& recipe, const Pattern& base, uint64_t memor
 	checkTileFilters(recipe);
 	if (base.domain == Domain::slice && !recipe.filters.empty() && stepsOfError(sharesOf(recipe), base.count()) > kMaxShareSteps)
 	{
-		throw Error(ExitCode::invalid_input, "size frames: found " + std::to_string(samplesOf(recipe, base.count())) +
+		throw Error(ExitCode::invalid_input, "size frames: found " + std::to_string(variantsOf(recipe) * base.count()) +
 												 " slices, expected fewer; or one that moves");
 	}
 	const uint64_t need = memory_bytes > 0 ? tileMemory(recipe, base, threads) : 0;
 	if (need > memory_bytes)
 	{
 		throw Error(ExitCode::runtime, "memory: found a need of about " + needText(need) + " for " +
-										   std::to_string(samplesOf(recipe, base.count())) + " samples, expected at most " +
+										   std::to_string(variantsOf(recipe) * base.count()) + " samples, expected at most " +
 										   capText(memory_bytes) +
 										   (recipe.frames > 1 && !recipe.moves ? "; or a tile that moves" : ""));
 	}

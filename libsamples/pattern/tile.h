@@ -63,6 +63,9 @@ inline int layersOf(const PatternTile& tile)
 	return tile.moves.empty() ? tile.frames : 1;
 }
 
+// The samples of all variants, with their weights divided.
+Pattern unionOf(const PatternTile& tile, double divisor);
+
 // Offset of a frame's variants: whole layers to skip, then rows and columns to move by, (layer · size + y) · size + x.
 int variantOfFrame(const PatternTile& tile, int frame);
 

@@ -28,6 +28,12 @@ struct VariantUnion
 double tileError(Domain domain, const VariantUnion& all, std::size_t variants, double lambda, EnergyGradient& gradient,
 				 int threads);
 
+// Number of variants with their own samples.
+inline std::size_t variantsOf(const TileRecipe& recipe)
+{
+	return static_cast<std::size_t>(recipe.size * recipe.size * (recipe.moves ? 1 : recipe.frames));
+}
+
 // The recipe's λ, or the default for its filters and frames.
 double lambdaOf(const TileRecipe& recipe);
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 namespace nook
@@ -21,22 +22,10 @@ namespace
 constexpr double kPairsAtOnce = 0x1p24; // of samples in one evaluation; above this, which takes seconds, use moments
 constexpr int kMemoryByMoments = 5;     // step pairs: a large tile is limited by memory
 
-// 64 × 64 pixels in each of 32 frames take 340 s of processor time; four times as many may not take ten minutes on two cores.
-int iterationsByMoments(std::size_t variants)
+int iterationLimit(bool moments, std::size_t variants, std::size_t points)
 {
-	return variants <= (std::size_t{1} << 17U) ? 200 : 60;
-}
-
-int iterationLimit(std::size_t points)
-{
-	return points <= 512 ? 2000 : points <= 1024 ? 600 : 200;
-}
-
-// A descent of few slices takes a millisecond, and its result varies widely.
-int sliceStarts(std::size_t slices)
-{
-	const double pairs = static_cast<double>(slices) * static_cast<double>(slices);
-	return static_cast<int>(std::clamp(0x1p18 / pairs, 1.0, 1024.0));
+	// 64 × 64 pixels in each of 32 frames take 340 s of processor time; four times as many may not take ten minutes on two cores.
+	return moments ? (variants <= (std::size_t{1} << 17U) ? 200 : 60) : points <= 512 ? 2000 : points <= 1024 ? 600 : 200;
 }
 
 // Variables: for each variant its layout's variables, then the logarithms of its weights, one per point or opposite pair.
@@ -120,11 +109,7 @@ public:
 				// p = u / √(1 + u²): ∂p/∂u = √(1 − p²) (1 − p pᵀ).
 				const std::span<const double> p(at.data() + i, m_layout.dimension());
 				const std::span<double> g = by_variables.subspan(i, p.size());
-				double along = 0.0;
-				for (std::size_t a = 0; a < p.size(); ++a)
-				{
-					along += p[a] * g[a];
-				}
+				const double along = std::inner_product(p.begin(), p.end(), g.begin(), 0.0);
 				for (std::size_t a = 0; a < p.size(); ++a)
 				{
 					g[a] -= along * p[a];
@@ -148,12 +133,7 @@ public:
 private:
 	static double squareOf(std::span<const double> p)
 	{
-		double sum = 0.0;
-		for (const double x : p)
-		{
-			sum += x * x;
-		}
-		return sum;
+		return sumOver(p, [](double x) { return x * x; });
 	}
 	static void scale(std::span<double> p, double factor)
 	{
@@ -253,13 +233,12 @@ private:
 std::size_t startsOf(Domain domain, const TileRecipe& recipe, std::size_t samples)
 {
 	const bool large = !recipe.filters.empty() && samples > 1024; // many variants make up for few starts
-	const int tried = domain == Domain::slice ? sliceStarts(samples) : large ? 1 : kDefaultTileStarts;
+	// A descent of few slices takes a millisecond, and its result varies widely.
+	const double pairs = static_cast<double>(samples) * static_cast<double>(samples);
+	const int tried = domain == Domain::slice ? static_cast<int>(std::clamp(0x1p18 / pairs, 1.0, 1024.0))
+					  : large                 ? 1
+											  : kDefaultTileStarts;
 	return static_cast<std::size_t>(recipe.starts != 0 ? recipe.starts : tried);
-}
-
-std::size_t variantsOf(const TileRecipe& recipe)
-{
-	return static_cast<std::size_t>(recipe.size * recipe.size * (recipe.moves ? 1 : recipe.frames));
 }
 
 // Slices cannot use moments: their kernel is not smooth.
@@ -415,7 +394,7 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, std::span<
 	std::vector<double> values(starts);
 	const int inner_threads = starts == 1 ? run.threads : 1;
 	LbfgsSettings settings;
-	settings.max_iterations = moments ? iterationsByMoments(variants) : iterationLimit(variants * base.count());
+	settings.max_iterations = iterationLimit(moments, variants, variants * base.count());
 	settings.memory = moments ? kMemoryByMoments : settings.memory;
 	settings.relative_decrease = 1e-5;
 	ProgressCounter progress(run.progress, "starts", starts * stepsOf(settings));

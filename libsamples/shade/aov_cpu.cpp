@@ -27,76 +27,47 @@ namespace nook
 namespace
 {
 
-// The surface visible in a pixel, in world space.
-struct Receiver
-{
-	glm::dvec3 position{0.0};
-	glm::dvec3 normal{0.0};
-	double error_m = 0.0; // uncertainty of the position
-};
-
-class Receivers
-{
-public:
-	explicit Receivers(const GBuffer& gbuffer)
-		: m_gbuffer(gbuffer), m_projector(gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px),
-		  m_world_from_camera(glm::inverse(gbuffer.view.camera_from_world))
-	{
-		assert(gbuffer.normals.size() == gbuffer.depth.size());
-	}
-
-	bool any(int x, int y) const
-	{
-		return std::isfinite(m_gbuffer.depth[m_gbuffer.index(x, y)]);
-	}
-
-	Receiver at(int x, int y) const
-	{
-		const std::size_t i = m_gbuffer.index(x, y);
-		const double rounding_m = m_gbuffer.depth_error_m.empty() ? static_cast<double>(m_gbuffer.depth[i]) * kUnitRoundoff
-																  : static_cast<double>(m_gbuffer.depth_error_m[i]);
-		return {glm::dvec3(m_world_from_camera * glm::dvec4(positionOf(m_gbuffer, m_projector, x, y), 1.0)),
-				glm::normalize(glm::dmat3(m_world_from_camera) * glm::dvec3(m_gbuffer.normals[i])),
-				rounding_m + m_gbuffer.view_error_m};
-	}
-
-private:
-	const GBuffer& m_gbuffer;
-	Projector m_projector;
-	glm::dmat4 m_world_from_camera;
-};
-
 // Visibility of single pixels. Thread-safe.
 class Pixels
 {
 public:
-	Pixels(const Receivers& receivers, const VolumeEvaluator& evaluator, const VolumeSet& volumes, const AovSettings& settings)
-		: m_receivers(receivers), m_evaluator(evaluator), m_volumes(volumes), m_settings(settings)
+	Pixels(const GBuffer& gbuffer, const VolumeEvaluator& evaluator, const VolumeSet& volumes, const AovSettings& settings)
+		: m_gbuffer(gbuffer), m_projector(gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px),
+		  m_world_from_camera(glm::inverse(gbuffer.view.camera_from_world)), m_evaluator(evaluator), m_volumes(volumes),
+		  m_settings(settings)
 	{
+		assert(gbuffer.normals.size() == gbuffer.depth.size());
 	}
 
 	// Adds the number of volumes that contain the pixel to `held`.
 	float at(int x, int y, uint64_t& held) const
 	{
-		if (!m_receivers.any(x, y))
+		const std::size_t i = m_gbuffer.index(x, y);
+		if (!std::isfinite(m_gbuffer.depth[i]))
 		{
 			return 1.0F;
 		}
-		const Receiver at = m_receivers.at(x, y);
+		const double rounding_m = m_gbuffer.depth_error_m.empty() ? static_cast<double>(m_gbuffer.depth[i]) * kUnitRoundoff
+																  : static_cast<double>(m_gbuffer.depth_error_m[i]);
+		const double error_m = rounding_m + m_gbuffer.view_error_m; // of the position
+		const glm::dvec3 position(m_world_from_camera * glm::dvec4(positionOf(m_gbuffer, m_projector, x, y), 1.0));
+		const glm::dvec3 normal = glm::normalize(glm::dmat3(m_world_from_camera) * glm::dvec3(m_gbuffer.normals[i]));
 		if (m_settings.mask)
 		{
-			const VolumeMask mask = m_evaluator.mask(at.position, at.normal, m_settings.directions, at.error_m);
+			const VolumeMask mask = m_evaluator.mask(position, normal, m_settings.directions, error_m);
 			held += mask.volumes;
 			return static_cast<float>(mask.visibility);
 		}
-		const VolumeSum sum = m_evaluator.sum(at.position, at.normal, at.error_m);
+		const VolumeSum sum = m_evaluator.sum(position, normal, error_m);
 		held += sum.volumes;
 		const double occlusion = m_settings.compensate ? m_volumes.compensation.at(sum.occlusion) : std::min(sum.occlusion, 1.0);
 		return static_cast<float>(1.0 - occlusion);
 	}
 
 private:
-	const Receivers& m_receivers;
+	const GBuffer& m_gbuffer;
+	Projector m_projector;
+	glm::dmat4 m_world_from_camera;
 	const VolumeEvaluator& m_evaluator;
 	const VolumeSet& m_volumes;
 	const AovSettings& m_settings;
@@ -201,7 +172,6 @@ AovShaded aovOnCpu(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSe
 {
 	const int every_px = settings.every_px;
 	assert(every_px == 1 || every_px == 3 || every_px == 5);
-	const Receivers receivers(gbuffer);
 	const VolumeEvaluator evaluator(volumes, run);
 	PicturePlane cells;
 	cells.width = (gbuffer.width_px + every_px - 1) / every_px;
@@ -212,7 +182,7 @@ AovShaded aovOnCpu(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSe
 	result.counts.volumes = volumes.occluders.polygons.size();
 	Shaded& shaded = result.shaded;
 	shaded.renderer = "CPU";
-	const Pixels pixels(receivers, evaluator, volumes, settings);
+	const Pixels pixels(gbuffer, evaluator, volumes, settings);
 	uint64_t of_cells = 0;
 	const auto fill_cells = [&]
 	{

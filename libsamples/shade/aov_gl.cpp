@@ -18,93 +18,11 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <span>
 #include <vector>
 
 namespace nook
 {
-
-GlArray::GlArray(std::span<const std::byte> bytes, unsigned format, std::size_t texel)
-	: m_buffer(glGenBuffers, glDeleteBuffers), m_texture(glGenTextures, glDeleteTextures)
-{
-	int most = 0;
-	glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-	if (bytes.size() / texel > static_cast<std::size_t>(most))
-	{
-		throw Error(ExitCode::unsupported, "OpenGL: found " + std::to_string(bytes.size() / texel) +
-											   " corners, polygons or clusters of volumes, expected at most " +
-											   std::to_string(most));
-	}
-	glBindBuffer(GL_TEXTURE_BUFFER, m_buffer);
-	glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max(bytes.size(), texel)), nullptr, GL_STATIC_DRAW);
-	glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
-	glActiveTexture(GL_TEXTURE15);
-	glBindTexture(GL_TEXTURE_BUFFER, m_texture);
-	glTexBuffer(GL_TEXTURE_BUFFER, format, m_buffer);
-	checkGlErrors();
-}
-
-void GlArray::bindTexture(unsigned unit) const
-{
-	glActiveTexture(GL_TEXTURE0 + unit);
-	glBindTexture(GL_TEXTURE_BUFFER, m_texture);
-}
-
-void GlArray::bindStorage(unsigned binding) const
-{
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, m_buffer);
-}
-
-GlProgram::GlProgram(const std::string& vertex, const std::string& fragment)
-	: m_name(linkedProgram({compiledShader(GL_VERTEX_SHADER, vertex), compiledShader(GL_FRAGMENT_SHADER, fragment)}))
-{
-	const unsigned block = glGetUniformBlockIndex(m_name, "NookVolumes");
-	if (block != GL_INVALID_INDEX)
-	{
-		glUniformBlockBinding(m_name, block, 0);
-	}
-	glUseProgram(m_name);
-	for (std::size_t i = 0; i < kAovUnits.size(); ++i)
-	{
-		glUniform1i(glGetUniformLocation(m_name, kAovUnits[i]), static_cast<int>(i));
-	}
-	checkGlErrors();
-}
-
-GlTarget::GlTarget(unsigned stored, unsigned channels, unsigned type, int width, int height)
-	: m_name(glGenTextures, glDeleteTextures)
-{
-	glActiveTexture(GL_TEXTURE15);
-	glBindTexture(GL_TEXTURE_2D, m_name);
-	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-	glTexImage2D(GL_TEXTURE_2D, 0, static_cast<int>(stored), width, height, 0, channels, type, nullptr);
-	checkGlErrors();
-}
-
-GlFrame::GlFrame(std::span<const unsigned> colours, unsigned depth) : m_name(glGenFramebuffers, glDeleteFramebuffers)
-{
-	glBindFramebuffer(GL_FRAMEBUFFER, m_name);
-	std::vector<unsigned> places;
-	for (const unsigned colour : colours)
-	{
-		places.push_back(GL_COLOR_ATTACHMENT0 + static_cast<unsigned>(places.size()));
-		glFramebufferTexture2D(GL_FRAMEBUFFER, places.back(), GL_TEXTURE_2D, colour, 0);
-	}
-	glDrawBuffers(static_cast<int>(places.size()), places.data());
-	if (depth != 0)
-	{
-		glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
-	}
-	if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-	{
-		throw Error(ExitCode::unsupported, "OpenGL: found no pictures of that format to draw into, expected some");
-	}
-}
-
-void GlFrame::use() const
-{
-	glBindFramebuffer(GL_FRAMEBUFFER, m_name);
-}
 
 nook_volumes::Header headerOf(const VolumeSet& volumes, bool compensate)
 {
@@ -169,6 +87,112 @@ nook_volumes::Camera cameraOf(const GBuffer& gbuffer, int every_px)
 	return camera;
 }
 
+namespace
+{
+
+// An array for shaders: a buffer and its buffer texture.
+class GlArray
+{
+public:
+	// `format` is the texel format and `texel` its size in bytes. Throws Error (unsupported) for more texels than OpenGL supports.
+	GlArray(std::span<const std::byte> bytes, unsigned format, std::size_t texel)
+		: m_buffer(glGenBuffers, glDeleteBuffers), m_texture(glGenTextures, glDeleteTextures)
+	{
+		int most = 0;
+		glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+		if (bytes.size() / texel > static_cast<std::size_t>(most))
+		{
+			throw Error(ExitCode::unsupported, "OpenGL: found " + std::to_string(bytes.size() / texel) +
+												   " corners, polygons or clusters of volumes, expected at most " +
+												   std::to_string(most));
+		}
+		glBindBuffer(GL_TEXTURE_BUFFER, m_buffer);
+		glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max(bytes.size(), texel)), nullptr, GL_STATIC_DRAW);
+		glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+		glActiveTexture(GL_TEXTURE15);
+		glBindTexture(GL_TEXTURE_BUFFER, m_texture);
+		glTexBuffer(GL_TEXTURE_BUFFER, format, m_buffer);
+		checkGlErrors();
+	}
+
+	// Binds it to the shaders' unit and, in OpenGL 4.3, to the storage of that number.
+	void bind(unsigned unit, bool storage) const
+	{
+		glActiveTexture(GL_TEXTURE0 + unit);
+		glBindTexture(GL_TEXTURE_BUFFER, m_texture);
+		if (storage)
+		{
+			glBindBufferBase(GL_SHADER_STORAGE_BUFFER, unit, m_buffer);
+		}
+	}
+
+	unsigned buffer() const
+	{
+		return m_buffer;
+	}
+
+private:
+	GlName m_buffer;
+	GlName m_texture;
+};
+
+// Textures that the programs read, by unit.
+constexpr std::array<const char*, 9> kAovUnits{"nook_corners", "nook_polygons",  "nook_clusters", "nook_depths",     "nook_normals",
+											   "nook_sums",    "nook_more_sums", "nook_cells",    "nook_half_spaces"};
+
+// A program whose block `NookVolumes` has binding 0.
+GlName aovProgram(GlName program)
+{
+	const unsigned block = glGetUniformBlockIndex(program, "NookVolumes");
+	if (block != GL_INVALID_INDEX)
+	{
+		glUniformBlockBinding(program, block, 0);
+	}
+	glUseProgram(program);
+	for (std::size_t i = 0; i < kAovUnits.size(); ++i)
+	{
+		glUniform1i(glGetUniformLocation(program, kAovUnits[i]), static_cast<int>(i));
+	}
+	checkGlErrors();
+	return program;
+}
+
+// An empty texture used as render target.
+GlName targetOf(unsigned stored, unsigned channels, unsigned type, int width, int height)
+{
+	GlName name(glGenTextures, glDeleteTextures);
+	glActiveTexture(GL_TEXTURE15);
+	glBindTexture(GL_TEXTURE_2D, name);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+	glTexImage2D(GL_TEXTURE_2D, 0, static_cast<int>(stored), width, height, 0, channels, type, nullptr);
+	checkGlErrors();
+	return name;
+}
+
+// Render targets drawn into together; depth: with stencil, 0: none. It stays bound.
+GlName glFrameOf(std::span<const unsigned> colours, unsigned depth)
+{
+	GlName name(glGenFramebuffers, glDeleteFramebuffers);
+	glBindFramebuffer(GL_FRAMEBUFFER, name);
+	std::vector<unsigned> places;
+	for (const unsigned colour : colours)
+	{
+		places.push_back(GL_COLOR_ATTACHMENT0 + static_cast<unsigned>(places.size()));
+		glFramebufferTexture2D(GL_FRAMEBUFFER, places.back(), GL_TEXTURE_2D, colour, 0);
+	}
+	glDrawBuffers(static_cast<int>(places.size()), places.data());
+	if (depth != 0)
+	{
+		glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
+	}
+	if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+	{
+		throw Error(ExitCode::unsupported, "OpenGL: found no pictures of that format to draw into, expected some");
+	}
+	return name;
+}
+
 // Render targets for volumes (one pixel per cell, or all pixels) and the resulting visibility.
 
 class AovPicture
@@ -190,7 +214,7 @@ public:
 	void bind() const;
 
 	// Draws the depth buffer from the bound linear depths; leaves the depth test enabled and depth writes disabled.
-	void drawDepth(const GlProgram& program) const;
+	void drawDepth(unsigned program) const;
 
 	// Call before drawing volumes: clears the sums or bits and draws into them.
 	void beginVolumes() const;
@@ -205,10 +229,10 @@ private:
 	int m_rows;
 	nook_volumes::Camera m_camera;
 	nook_volumes::Frame m_frame;
-	std::unique_ptr<GlTarget> m_depth_stencil;
-	std::vector<std::unique_ptr<GlTarget>> m_sums;
+	GlName m_depth_stencil;
+	std::vector<GlName> m_sums;
 	std::unique_ptr<GlTexture> m_result;
-	std::unique_ptr<GlFrame> m_volume_frame, m_result_frame;
+	GlName m_volume_frame, m_result_frame;
 	GlName m_block;
 };
 
@@ -245,17 +269,6 @@ private:
 	GlName m_commands;
 };
 
-namespace
-{
-
-// A triangle that covers the whole picture.
-constexpr const char* kFullScreen = R"(#version 330 core
-void main()
-{
-	gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
-}
-)";
-
 // Converts linear depth to depth buffer values.
 constexpr const char* kDepthPass = R"(#version 330 core
 uniform sampler2D nook_depths;
@@ -268,18 +281,18 @@ void main()
 }
 )";
 
-std::unique_ptr<GlTarget> sumTarget(AovTarget target, int width, int height)
+// For sums, or for bits in as many 32-bit channels as needed.
+GlName volumeTarget(const AovSettings& settings, int bits, int width, int height)
 {
-	const unsigned stored = target == AovTarget::r16f ? GL_R16F : target == AovTarget::r8 ? GL_R8 : GL_R32F;
-	return std::make_unique<GlTarget>(stored, GL_RED, GL_FLOAT, width, height);
-}
-
-// Uses as many 32-bit channels as needed.
-std::unique_ptr<GlTarget> bitsTarget(int bits, int width, int height)
-{
+	if (!settings.mask)
+	{
+		const AovTarget target = settings.target;
+		const unsigned stored = target == AovTarget::r16f ? GL_R16F : target == AovTarget::r8 ? GL_R8 : GL_R32F;
+		return targetOf(stored, GL_RED, GL_FLOAT, width, height);
+	}
 	const unsigned stored = bits <= 32 ? GL_R32UI : bits <= 64 ? GL_RG32UI : GL_RGBA32UI;
 	const unsigned channels = bits <= 32 ? GL_RED_INTEGER : bits <= 64 ? GL_RG_INTEGER : GL_RGBA_INTEGER;
-	return std::make_unique<GlTarget>(stored, channels, GL_UNSIGNED_INT, width, height);
+	return targetOf(stored, channels, GL_UNSIGNED_INT, width, height);
 }
 
 void bindTexture(unsigned unit, unsigned name)
@@ -291,16 +304,6 @@ void bindTexture(unsigned unit, unsigned name)
 template <class Item> std::span<const std::byte> bytesOf(const std::vector<Item>& items)
 {
 	return std::as_bytes(std::span(items));
-}
-
-void setTimes(Shaded& shaded, const std::vector<std::vector<PassTime>>& drawings)
-{
-	for (std::size_t pass = 0; pass < drawings.front().size(); ++pass)
-	{
-		const auto seconds = mapped(drawings, [&](const std::vector<PassTime>& drawn) { return drawn[pass].seconds; });
-		shaded.passes.push_back(passTimeOf(drawings.front()[pass].name, seconds));
-		shaded.seconds += shaded.passes.back().seconds;
-	}
 }
 
 class Drawer
@@ -329,11 +332,11 @@ public:
 		m_volumes->bind();
 		bindTexture(3, m_depths->name());
 		bindTexture(4, m_normals->name());
-		bindTexture(8, m_half_spaces ? m_half_spaces->name() : 0);
+		bindTexture(8, m_half_spaces);
 		m_picture->bind();
 		m_counts.fragments = 0;
 		std::vector<PassTime> times;
-		times.push_back({"depth", secondsOf([this] { m_picture->drawDepth(*m_depth_program); }, timer)});
+		times.push_back({"depth", secondsOf([this] { m_picture->drawDepth(m_depth_program); }, timer)});
 		times.push_back({"volumes", secondsOf([this] { drawVolumes(*m_picture); }, timer)});
 		times.push_back({"resolve", secondsOf([this] { resolve(*m_picture); }, timer)});
 		if (m_whole)
@@ -341,7 +344,7 @@ public:
 			glEnable(GL_STENCIL_TEST);
 			times.push_back({"reconstruction", secondsOf([this] { reconstruct(); }, timer)});
 			m_whole->bind();
-			times.push_back({"depth, pixels alone", secondsOf([this] { m_whole->drawDepth(*m_depth_program); }, timer)});
+			times.push_back({"depth, pixels alone", secondsOf([this] { m_whole->drawDepth(m_depth_program); }, timer)});
 			times.push_back({"volumes, pixels alone", secondsOf([this] { drawVolumes(*m_whole); }, timer)});
 			times.push_back({"resolve, pixels alone", secondsOf([this] { m_counts.pixels_alone = resolve(*m_whole); }, timer)});
 			glDisable(GL_STENCIL_TEST);
@@ -388,23 +391,21 @@ private:
 	{
 		const int width = m_gbuffer.width_px;
 		const int height = m_gbuffer.height_px;
-		std::vector<glm::vec4> normals(m_gbuffer.normals.size());
-		for (std::size_t i = 0; i < normals.size(); ++i)
-		{
-			normals[i] = glm::vec4(m_gbuffer.normals[i], 0.0F);
-		}
+		const auto normals = mapped(m_gbuffer.normals, [](const glm::vec3& normal) { return glm::vec4(normal, 0.0F); });
 		m_depths = std::make_unique<GlTexture>(width, height, 1, finiteDepths(m_gbuffer).data());
 		m_normals = std::make_unique<GlTexture>(width, height, 4, &normals[0].x);
 		m_volumes = std::make_unique<GlVolumes>(m_packed, m_picture->frame(), m_options);
 		const std::string head = m_options.storage_buffers ? "#version 430 core\n" : "#version 330 core\n";
 		const std::string vertex = head + "#define NOOK_VERTEX\n" + (m_options.prisms ? "#define NOOK_PRISMS\n" : "") +
 								   (m_options.choose_faces ? "#define NOOK_CHOOSE_FACES\n" : "");
-		m_depth_program = std::make_unique<GlProgram>(kFullScreen, kDepthPass);
-		m_volume_program = std::make_unique<GlProgram>(vertex + m_text, head + "#define NOOK_FRAGMENT\n" + m_text);
-		m_resolve_program = std::make_unique<GlProgram>(kFullScreen, head + "#define NOOK_RESOLVE\n" + m_text);
+		m_depth_program = aovProgram(fragmentProgram(kDepthPass));
+		m_volume_program =
+			aovProgram(linkedProgram({compiledShader(GL_VERTEX_SHADER, vertex + m_text),
+									  compiledShader(GL_FRAGMENT_SHADER, head + "#define NOOK_FRAGMENT\n" + m_text)}));
+		m_resolve_program = aovProgram(fragmentProgram(head + "#define NOOK_RESOLVE\n" + m_text));
 		if (m_whole)
 		{
-			m_sparse_program = std::make_unique<GlProgram>(kFullScreen, head + "#define NOOK_SPARSE\n" + m_text);
+			m_sparse_program = aovProgram(fragmentProgram(head + "#define NOOK_SPARSE\n" + m_text));
 		}
 		if (m_settings.mask)
 		{
@@ -418,10 +419,10 @@ private:
 	{
 		constexpr int kSide = 64; // nookHalfSpaces
 		const int height = (m_settings.directions + 127) / 128 * kSide;
-		m_half_spaces = std::make_unique<GlTarget>(GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, kSide, height);
-		const GlFrame frame(std::array{m_half_spaces->name()}, 0);
-		const GlProgram program(kFullScreen, head + "#define NOOK_HALF_SPACES\n" + m_text);
-		glUseProgram(program.name());
+		m_half_spaces = targetOf(GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, kSide, height);
+		const GlName frame = glFrameOf(std::array<unsigned, 1>{m_half_spaces}, 0);
+		const GlName program = aovProgram(fragmentProgram(head + "#define NOOK_HALF_SPACES\n" + m_text));
+		glUseProgram(program);
 		glViewport(0, 0, kSide, height);
 		m_volumes->bind();
 		glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -431,7 +432,7 @@ private:
 	void drawVolumes(const AovPicture& picture)
 	{
 		picture.beginVolumes();
-		glUseProgram(m_volume_program->name());
+		glUseProgram(m_volume_program);
 		glEnable(GL_DEPTH_CLAMP);
 		glEnable(GL_CULL_FACE);
 		glFrontFace(picture.frame().mirrored() ? GL_CW : GL_CCW);
@@ -474,7 +475,7 @@ private:
 	uint64_t resolve(const AovPicture& picture) const
 	{
 		picture.useResult();
-		glUseProgram(m_resolve_program->name());
+		glUseProgram(m_resolve_program);
 		glBeginQuery(GL_SAMPLES_PASSED, m_query);
 		glDrawArrays(GL_TRIANGLES, 0, 3);
 		glEndQuery(GL_SAMPLES_PASSED);
@@ -489,7 +490,7 @@ private:
 		glClearBufferiv(GL_STENCIL, 0, &none);
 		glStencilFunc(GL_ALWAYS, 1, 255);
 		glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
-		glUseProgram(m_sparse_program->name());
+		glUseProgram(m_sparse_program);
 		glDrawArrays(GL_TRIANGLES, 0, 3);
 		glStencilFunc(GL_EQUAL, 0, 255);
 		glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
@@ -500,7 +501,7 @@ private:
 	{
 		if (m_options.choose_faces)
 		{
-			glUniform1i(glGetUniformLocation(m_volume_program->name(), "nook_faces"), faces);
+			glUniform1i(glGetUniformLocation(m_volume_program, "nook_faces"), faces);
 		}
 		m_volumes->draw(clusters);
 	}
@@ -518,13 +519,11 @@ private:
 	std::unique_ptr<AovPicture> m_picture; // one pixel per cell
 	std::unique_ptr<AovPicture> m_whole;   // all pixels, if that is a different picture
 	std::unique_ptr<GlVolumes> m_volumes;
-	std::unique_ptr<GlTarget> m_half_spaces; // masks: their table
-	std::unique_ptr<GlProgram> m_depth_program, m_volume_program, m_resolve_program, m_sparse_program;
+	GlName m_half_spaces; // masks: their table
+	GlName m_depth_program, m_volume_program, m_resolve_program, m_sparse_program;
 	GlName m_query;
 	AovCounts m_counts;
 };
-
-} // namespace
 
 AovPicture::AovPicture(const GBuffer& gbuffer, const nook_volumes::Header& header, const AovSettings& settings, int every_px)
 	: m_mask(settings.mask), m_every_px(every_px), m_columns((gbuffer.width_px + every_px - 1) / every_px),
@@ -537,19 +536,17 @@ AovPicture::AovPicture(const GBuffer& gbuffer, const nook_volumes::Header& heade
 		throw Error(ExitCode::unsupported,
 					std::string("camera: found ") + problem + ", expected a right-handed one, column by column, without a skew");
 	}
-	m_depth_stencil =
-		std::make_unique<GlTarget>(GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, m_columns, m_rows);
+	m_depth_stencil = targetOf(GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, m_columns, m_rows);
 	std::vector<unsigned> sums;
 	for (int first = 0; first < (settings.mask ? settings.directions : 1); first += 128)
 	{
 		// Above 128 directions there are two targets, the second with all four channels; unused ones stay 0.
-		m_sums.push_back(settings.mask ? bitsTarget(first > 0 ? 128 : settings.directions, m_columns, m_rows)
-									   : sumTarget(settings.target, m_columns, m_rows));
-		sums.push_back(m_sums.back()->name());
+		m_sums.push_back(volumeTarget(settings, first > 0 ? 128 : settings.directions, m_columns, m_rows));
+		sums.push_back(m_sums.back());
 	}
 	m_result = std::make_unique<GlTexture>(PictureShape{PictureFormat::scalar, m_columns, m_rows});
-	m_volume_frame = std::make_unique<GlFrame>(sums, m_depth_stencil->name());
-	m_result_frame = std::make_unique<GlFrame>(std::array{m_result->name()}, m_depth_stencil->name());
+	m_volume_frame = glFrameOf(sums, m_depth_stencil);
+	m_result_frame = glFrameOf(std::array{m_result->name()}, m_depth_stencil);
 	glBindBuffer(GL_UNIFORM_BUFFER, m_block);
 	glBufferData(GL_UNIFORM_BUFFER, sizeof m_frame.block, &m_frame.block, GL_STATIC_DRAW);
 }
@@ -557,20 +554,20 @@ AovPicture::AovPicture(const GBuffer& gbuffer, const nook_volumes::Header& heade
 void AovPicture::bind() const
 {
 	glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
-	bindTexture(5, m_sums[0]->name());
-	bindTexture(6, m_sums.back()->name());
+	bindTexture(5, m_sums[0]);
+	bindTexture(6, m_sums.back());
 	bindTexture(7, m_result->name());
 }
 
-void AovPicture::drawDepth(const GlProgram& program) const
+void AovPicture::drawDepth(unsigned program) const
 {
 	const double* const p = m_camera.projection;
-	m_volume_frame->use();
+	glBindFramebuffer(GL_FRAMEBUFFER, m_volume_frame);
 	glViewport(0, 0, m_columns, m_rows);
-	glUseProgram(program.name());
-	glUniform4f(glGetUniformLocation(program.name(), "nook_z"), static_cast<float>(-p[10]), static_cast<float>(p[14]),
+	glUseProgram(program);
+	glUniform4f(glGetUniformLocation(program, "nook_z"), static_cast<float>(-p[10]), static_cast<float>(p[14]),
 				static_cast<float>(-p[11]), static_cast<float>(p[15]));
-	glUniform1i(glGetUniformLocation(program.name(), "nook_every"), m_every_px);
+	glUniform1i(glGetUniformLocation(program, "nook_every"), m_every_px);
 	glDisable(GL_BLEND);
 	glDisable(GL_CULL_FACE);
 	glEnable(GL_DEPTH_TEST);
@@ -584,7 +581,7 @@ void AovPicture::drawDepth(const GlProgram& program) const
 
 void AovPicture::beginVolumes() const
 {
-	m_volume_frame->use();
+	glBindFramebuffer(GL_FRAMEBUFFER, m_volume_frame);
 	glViewport(0, 0, m_columns, m_rows);
 	const std::array<float, 4> none{};
 	const std::array<unsigned, 4> no_bits{};
@@ -601,7 +598,7 @@ void AovPicture::beginVolumes() const
 
 void AovPicture::useResult() const
 {
-	m_result_frame->use();
+	glBindFramebuffer(GL_FRAMEBUFFER, m_result_frame);
 	glViewport(0, 0, m_columns, m_rows);
 }
 
@@ -642,11 +639,7 @@ void GlVolumes::bind() const
 	const std::array<const GlArray*, 3> arrays{m_corners.get(), m_polygons.get(), m_clusters.get()};
 	for (unsigned i = 0; i < arrays.size(); ++i)
 	{
-		arrays[i]->bindTexture(i);
-		if (m_options.storage_buffers)
-		{
-			arrays[i]->bindStorage(i);
-		}
+		arrays[i]->bind(i, m_options.storage_buffers);
 	}
 }
 
@@ -705,6 +698,8 @@ void GlVolumes::drawTogether(const std::vector<std::size_t>& clusters) const
 	glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, static_cast<int>(clusters.size()), 0);
 }
 
+} // namespace
+
 AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSettings& settings, const DrawSettings& drawing,
 				  const AovGlOptions& options)
 {
@@ -716,11 +711,7 @@ AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSet
 	Drawer drawer(gbuffer, volumes, settings, options);
 	const bool timer = !context.isSoftware();
 	warmUp(context, drawing.repetitions, [&] { drawer.draw(timer); });
-	std::vector<std::vector<PassTime>> times;
-	for (int repetition = 0; repetition <= drawing.repetitions; ++repetition)
-	{
-		times.push_back(drawer.draw(timer));
-	}
+	const auto times = listOf(static_cast<std::size_t>(drawing.repetitions) + 1, [&](std::size_t) { return drawer.draw(timer); });
 	AovShaded made{{drawer.visibility(), context.renderer(), 0.0, {}, {}}, drawer.counts()};
 	setTimes(made.shaded, times);
 	return made;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Volumes on the GPU, and the programs that draw them.
+// How volumes are drawn on the GPU.
 #pragma once
 
 #include "methods/aov_text.h"
@@ -8,78 +8,8 @@
 #include "volume/packed.h"
 #include "volume/runtime/nook_volumes_draw.h"
 
-#include <array>
-#include <cstddef>
-#include <span>
-#include <string>
-
 namespace nook
 {
-
-// An array for shaders: a buffer and its buffer texture.
-class GlArray
-{
-public:
-	// `format` is the texel format and `texel` its size in bytes. Throws Error (unsupported) for more texels than OpenGL supports.
-	GlArray(std::span<const std::byte> bytes, unsigned format, std::size_t texel);
-
-	void bindTexture(unsigned unit) const;
-	void bindStorage(unsigned binding) const; // OpenGL 4.3
-	unsigned buffer() const
-	{
-		return m_buffer;
-	}
-
-private:
-	GlName m_buffer;
-	GlName m_texture;
-};
-
-// Textures that the programs read, by unit.
-inline constexpr std::array<const char*, 9> kAovUnits{"nook_corners",   "nook_polygons", "nook_clusters",
-													  "nook_depths",    "nook_normals",  "nook_sums",
-													  "nook_more_sums", "nook_cells",    "nook_half_spaces"};
-
-// The block `NookVolumes` has binding 0.
-class GlProgram
-{
-public:
-	GlProgram(const std::string& vertex, const std::string& fragment);
-
-	unsigned name() const
-	{
-		return m_name;
-	}
-
-private:
-	GlName m_name;
-};
-
-// An empty texture used as render target.
-class GlTarget
-{
-public:
-	GlTarget(unsigned stored, unsigned channels, unsigned type, int width, int height);
-
-	unsigned name() const
-	{
-		return m_name;
-	}
-
-private:
-	GlName m_name;
-};
-
-// Render targets drawn into together; depth: with stencil, 0: none.
-class GlFrame
-{
-public:
-	GlFrame(std::span<const unsigned> colours, unsigned depth);
-	void use() const;
-
-private:
-	GlName m_name;
-};
 
 // How aovOnGl draws; does not affect the pictures.
 struct AovGlOptions

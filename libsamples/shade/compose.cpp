@@ -24,8 +24,6 @@ struct Static
 	std::optional<BakedPicture> baked;
 	std::optional<GBuffer> gbuffer; // of what does not move, where it differs from the picture's
 	std::vector<uint8_t> is_fixed;  // 1: the pixel shows what does not move; empty: not known
-	std::size_t baked_pixels = 0;
-	std::size_t moving_pixels = 0;
 	std::vector<std::string> files; // read
 };
 
@@ -53,8 +51,6 @@ void readBake(const ComposeSettings& settings, const GBuffer& gbuffer, const Run
 	fixed.baked = bakedPicture(tracer, values, gbuffer, run);
 	fixed.gbuffer = std::move(fixed.baked->fixed);
 	fixed.files = loaded.level.files;
-	fixed.baked_pixels =
-		static_cast<std::size_t>(std::count(fixed.baked->is_baked.begin(), fixed.baked->is_baked.end(), uint8_t{1}));
 }
 
 // Throws Error (invalid_input) for a bake that was made for something else, or a G-buffer of another size or camera.
@@ -79,7 +75,6 @@ Static readStatic(const ComposeSettings& settings, const GBuffer& gbuffer, const
 	if (fixed.gbuffer)
 	{
 		fixed.is_fixed = alignStatic(*fixed.gbuffer, gbuffer);
-		fixed.moving_pixels = static_cast<std::size_t>(std::count(fixed.is_fixed.begin(), fixed.is_fixed.end(), uint8_t{0}));
 		if (fixed.gbuffer->depth == gbuffer.depth)
 		{
 			fixed.gbuffer.reset(); // nothing moves: both pictures are one
@@ -233,11 +228,12 @@ Composed compose(const ComposeSettings& settings, const GBuffer& gbuffer, const 
 	const Static fixed = readStatic(settings, gbuffer, run);
 	if (fixed.baked)
 	{
-		composed.baked_pixels = fixed.baked_pixels;
+		composed.baked_pixels =
+			static_cast<std::size_t>(std::count(fixed.baked->is_baked.begin(), fixed.baked->is_baked.end(), uint8_t{1}));
 	}
 	if (!fixed.is_fixed.empty())
 	{
-		composed.moving_pixels = fixed.moving_pixels;
+		composed.moving_pixels = static_cast<std::size_t>(std::count(fixed.is_fixed.begin(), fixed.is_fixed.end(), uint8_t{0}));
 	}
 	composed.files = fixed.files;
 	if (settings.screen)

@@ -339,13 +339,6 @@ void GlPass::bind(const char* sampler, const GlTexture& texture)
 	m_units.push_back({glGetUniformLocation(m_program, sampler), &texture});
 }
 
-void GlPass::setIntegers(const char* name, const glm::ivec4& values)
-{
-	glUseProgram(m_program);
-	glUniform4i(glGetUniformLocation(m_program, name), values.x, values.y, values.z, values.w);
-	checkGlErrors();
-}
-
 void GlPass::bindBlock(const char* block, std::span<const std::byte> bytes)
 {
 	glBindBuffer(GL_UNIFORM_BUFFER, m_block);
@@ -425,19 +418,6 @@ std::vector<float> readScalar(const GlTexture& texture)
 std::vector<float> readQuads(const GlTexture& texture)
 {
 	return readFloats(texture, GL_RGBA, 4);
-}
-
-std::vector<std::uint32_t> readCounts(const GlTexture& texture, int layer)
-{
-	const PictureShape& shape = texture.shape();
-	std::vector<std::uint32_t> values(4 * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
-	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
-	glBindFramebuffer(GL_FRAMEBUFFER, frame);
-	glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture.name(), 0, layer);
-	glPixelStorei(GL_PACK_ALIGNMENT, 4);
-	glReadPixels(0, 0, shape.width, shape.height, GL_RGBA_INTEGER, GL_UNSIGNED_INT, values.data());
-	checkGlErrors();
-	return values;
 }
 
 unsigned compiledShader(unsigned kind, const std::string& source)

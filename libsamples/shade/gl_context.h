@@ -150,9 +150,6 @@ public:
 	void bind(const char* sampler, const GlTexture& texture);
 	void bindBlock(const char* block, std::span<const std::byte> bytes);
 
-	// Sets a uniform ivec4; ignored if the program has no such uniform.
-	void setIntegers(const char* name, const glm::ivec4& values);
-
 	// Records the pixels that it discards, or fills only those. `left` has the target's size and must outlive the pass.
 	void leave(const GlLeft& left);
 	void fill(const GlLeft& left);
@@ -180,9 +177,6 @@ private:
 // Reads level 0 of a scalar picture, or of quads with four values per pixel; rows in gl_FragCoord order.
 std::vector<float> readScalar(const GlTexture& texture);
 std::vector<float> readQuads(const GlTexture& texture);
-
-// Reads a layer of counts.
-std::vector<std::uint32_t> readCounts(const GlTexture& texture, int layer);
 
 // Shared by all OpenGL programs: compiling, linking and timing.
 

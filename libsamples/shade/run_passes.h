@@ -31,22 +31,7 @@ PassTime passTimeOf(const std::string& name, std::vector<double> seconds);
 // Stores the last pass's result: visibility, or bent normals and visibility as four values per pixel.
 void setResult(Shaded& shaded, std::vector<float> values, bool quads);
 
-class PassTimes
-{
-public:
-	explicit PassTimes(const ShadePlan& plan);
-
-	// Including the warm-up.
-	static int drawings(const DrawSettings& settings);
-
-	void add(std::size_t pass, double seconds);
-
-	// Stores the medians and their sum.
-	void finish(Shaded& shaded) const;
-
-private:
-	std::vector<std::string> m_names;
-	std::vector<std::vector<double>> m_seconds;
-};
+// Stores the medians of the passes of several drawings, and their sum. The first drawing is a warm-up.
+void setTimes(Shaded& shaded, const std::vector<std::vector<PassTime>>& drawings);
 
 } // namespace nook

@@ -50,14 +50,14 @@ Shaded shadeOnCpu(const GBuffer& gbuffer, const ShadeSamples& samples, const Sha
 	inputs.samples = samples.samples;
 	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings, settings.statvo.builder != TableBuilder::fragments);
 	std::vector<Planes> pictures = picturesFor(plan);
-	PassTimes times(plan);
-	for (int repetition = 0; repetition < times.drawings(drawing); ++repetition)
+	std::vector<std::vector<PassTime>> drawings(static_cast<std::size_t>(drawing.repetitions) + 1);
+	for (std::vector<PassTime>& times : drawings)
 	{
-		for (std::size_t i = 0; i < plan.passes.size(); ++i)
+		for (const ShadePass& pass : plan.passes)
 		{
 			const auto start = std::chrono::steady_clock::now();
-			runPass(plan.passes[i], inputs, pictures, run);
-			times.add(i, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+			runPass(pass, inputs, pictures, run);
+			times.push_back({pass.kernel.name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
 		}
 	}
 	Shaded shaded;
@@ -65,7 +65,7 @@ Shaded shadeOnCpu(const GBuffer& gbuffer, const ShadeSamples& samples, const Sha
 	shaded.tables_by = settings.statvo.builder == TableBuilder::fragments ? "fragments" : "scans";
 	PicturePlane& last = pictures[plan.passes.back().picture][0];
 	setResult(shaded, std::move(last.values), last.channels == 4);
-	times.finish(shaded);
+	setTimes(shaded, drawings);
 	return shaded;
 }
 
@@ -310,27 +310,12 @@ void setResult(Shaded& shaded, std::vector<float> values, bool quads)
 	}
 }
 
-PassTimes::PassTimes(const ShadePlan& plan)
-	: m_names(mapped(plan.passes, [](const ShadePass& pass) { return std::string(pass.kernel.name); })),
-	  m_seconds(plan.passes.size())
+void setTimes(Shaded& shaded, const std::vector<std::vector<PassTime>>& drawings)
 {
-}
-
-int PassTimes::drawings(const DrawSettings& settings)
-{
-	return settings.repetitions + 1;
-}
-
-void PassTimes::add(std::size_t pass, double seconds)
-{
-	m_seconds[pass].push_back(seconds);
-}
-
-void PassTimes::finish(Shaded& shaded) const
-{
-	for (std::size_t i = 0; i < m_names.size(); ++i)
+	for (std::size_t pass = 0; pass < drawings.front().size(); ++pass)
 	{
-		shaded.passes.push_back(passTimeOf(m_names[i], m_seconds[i]));
+		const auto seconds = mapped(drawings, [&](const std::vector<PassTime>& drawn) { return drawn[pass].seconds; });
+		shaded.passes.push_back(passTimeOf(drawings.front()[pass].name, seconds));
 		shaded.seconds += shaded.passes.back().seconds;
 	}
 }
@@ -342,11 +327,7 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 	const GlContext& context = session.use();
 	const bool compute = usesCompute(context, settings);
 	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings, compute);
-	std::vector<glm::vec4> normals(gbuffer.normals.size());
-	for (std::size_t i = 0; i < normals.size(); ++i)
-	{
-		normals[i] = glm::vec4(gbuffer.normals[i], 0.0F);
-	}
+	const auto normals = mapped(gbuffer.normals, [](const glm::vec3& normal) { return glm::vec4(normal, 0.0F); });
 	const Inputs inputs(gbuffer, samples, normals);
 	std::vector<std::unique_ptr<GlTexture>> pictures =
 		mapped(plan.pictures, [&](const PictureShape& shape) { return std::make_unique<GlTexture>(shape); });
@@ -363,32 +344,29 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 		}
 		programs.push_back(programOf(session, pass, plan, inputs, pictures));
 	}
-	const auto draw = [&](PassTimes& times)
+	const auto draw = [&]
 	{
+		std::vector<PassTime> times;
 		for (std::size_t i = 0; i < programs.size(); ++i)
 		{
 			const ShadePass& pass = plan.passes[i];
 			const GlTexture& target = *pictures[pass.picture];
 			const bool timer = !context.isSoftware();
-			times.add(i, pass.scans ? scans[static_cast<std::size_t>(pass.block.axis)]->run(*pictures[pass.reads.front().picture],
-																							target, pass.layer, timer)
-									: programs[i]->draw(target, pass.level, pass.layer, timer));
+			times.push_back({pass.kernel.name, pass.scans ? scans[static_cast<std::size_t>(pass.block.axis)]->run(
+																*pictures[pass.reads.front().picture], target, pass.layer, timer)
+														  : programs[i]->draw(target, pass.level, pass.layer, timer)});
 		}
+		return times;
 	};
-	PassTimes cold(plan);
-	warmUp(context, drawing.repetitions, [&] { draw(cold); });
-	PassTimes times(plan);
-	for (int repetition = 0; repetition < PassTimes::drawings(drawing); ++repetition)
-	{
-		draw(times);
-	}
+	warmUp(context, drawing.repetitions, draw);
+	const auto times = listOf(static_cast<std::size_t>(drawing.repetitions) + 1, [&](std::size_t) { return draw(); });
 	Shaded shaded;
 	shaded.renderer = context.renderer();
 	shaded.tables_by = compute ? "compute" : "fragments";
 	const GlTexture& last = *pictures[plan.passes.back().picture];
 	const bool quads = last.shape().format == PictureFormat::quad;
 	setResult(shaded, quads ? readQuads(last) : readScalar(last), quads);
-	times.finish(shaded);
+	setTimes(shaded, times);
 	return shaded;
 }
 

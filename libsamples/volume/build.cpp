@@ -302,10 +302,8 @@ public:
 		reference.falloff = Falloff::linear;
 		reference.radius_m = detail.ray_distance_m > 0.0 ? detail.ray_distance_m : settings.distance_m / kPaperRayRatio;
 		reference.rays = detail.masks ? 4 * detail.rays : detail.rays; // masks err less than the noise of few rays
-		for (const ReferenceValue& value : referenceAtPoints(tracer, m_points, reference, run))
-		{
-			m_occlusions.push_back(1.0 - value.visibility);
-		}
+		m_occlusions = mapped(referenceAtPoints(tracer, m_points, reference, run),
+							  [](const ReferenceValue& value) { return 1.0 - value.visibility; });
 	}
 
 	std::size_t points() const
@@ -341,7 +339,7 @@ private:
 					[&](std::size_t i)
 					{
 						const ReferencePoint& point = m_points[i];
-						const double seen = evaluator.maskedVisibility(point.position, point.normal, kMaskDirections);
+						const double seen = evaluator.mask(point.position, point.normal, kMaskDirections).visibility;
 						squares[i] = (1.0 - m_occlusions[i] - seen) * (1.0 - m_occlusions[i] - seen);
 					});
 		return std::sqrt(sumOver(squares) / static_cast<double>(squares.size()));

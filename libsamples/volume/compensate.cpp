@@ -184,11 +184,6 @@ double logOfVisibility(double occlusion)
 	return logOf(255.0 * std::clamp(1.0 - occlusion, 0.0, 1.0) + 1.0);
 }
 
-double occlusionOfLog(double log)
-{
-	return std::clamp(1.0 - (expOf(log) - 1.0) / 255.0, 0.0, 1.0);
-}
-
 // The non-decreasing sequence with the least weighted sum of squared differences.
 std::vector<double> isotonic(std::span<const double> values, std::span<const double> weights)
 {
@@ -378,16 +373,9 @@ void checkCurve(const VolumeSet& volumes, const Tracer& tracer, const Compensate
 		const std::span<const TripleValues> of(values.data() + begin, end - begin);
 		return CurveCheck{of.size(), errorsOf(Compensation{}, of), errorsOf(result.curve, of)};
 	};
-	for (std::size_t begin = 0; begin < triples.size();)
-	{
-		std::size_t end = begin + 1;
-		while (end < triples.size() && triples[end].view == triples[begin].view)
-		{
-			++end;
-		}
-		result.views.push_back(check(begin, end));
-		begin = end;
-	}
+	forRuns(
+		triples, [](const PictureTriple& a, const PictureTriple& b) { return a.view == b.view; },
+		[&](std::size_t begin, std::size_t end) { result.views.push_back(check(begin, end)); });
 	result.check = check(0, values.size());
 	const CurveErrors& before = result.check.before;
 	const CurveErrors& after = result.check.after;
@@ -435,11 +423,6 @@ std::vector<PictureTriple> pictureTriples(const Tracer& tracer, const PictureSet
 		}
 	}
 	return triples;
-}
-
-double pictureError(const Compensation& curve, std::span<const TripleValues> triples)
-{
-	return Meter(curve, triples, CurveMeasure::eq14).error();
 }
 
 double curveError(const Compensation& curve, std::span<const TripleValues> triples, CurveMeasure measure)
@@ -497,7 +480,7 @@ CurveErrors errorsOf(const Compensation& curve, std::span<const TripleValues> tr
 	const auto count = static_cast<double>(triples.size());
 	errors.rmse = std::sqrt(errors.rmse / count);
 	errors.mean /= count;
-	errors.eq14 = pictureError(curve, triples);
+	errors.eq14 = curveError(curve, triples);
 	return errors;
 }
 
@@ -526,20 +509,15 @@ Compensation fitCurve(std::span<const double> sums, std::span<const double> occl
 	curve.range = std::max(0.125, sums[order[(order.size() - 1) - order.size() / 1000]]);
 
 	// Eq. 14's logarithms of visibility fall with the sum; their negatives rise.
-	std::vector<double> places;
-	std::vector<double> logs;
-	for (const std::size_t i : order)
-	{
-		places.push_back(sums[i] / curve.range);
-		logs.push_back(-logOfVisibility(occlusions[i]));
-	}
+	const auto places = mapped(order, [&](std::size_t i) { return sums[i] / curve.range; });
+	const auto logs = mapped(order, [&](std::size_t i) { return -logOfVisibility(occlusions[i]); });
 	std::vector<double> weights(logs.size(), 1.0);
 	const std::vector<double> fitted = isotonic(logs, weights);
 	std::vector<double> values;
 	for (std::size_t i = 0; i < fitted.size(); ++i)
 	{
-		values.push_back(occlusionOfLog(-fitted[i]));
-		const double slope = 255.0 / (255.0 * (1.0 - values.back()) + 1.0); // derivative of the logarithm
+		values.push_back(std::clamp(1.0 - (expOf(-fitted[i]) - 1.0) / 255.0, 0.0, 1.0)); // its inverse
+		const double slope = 255.0 / (255.0 * (1.0 - values.back()) + 1.0);              // derivative of the logarithm
 		weights[i] = slope * slope;
 	}
 

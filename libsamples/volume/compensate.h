@@ -46,18 +46,15 @@ struct TripleValues
 	std::array<bool, 3> there{true, false, false};
 };
 
-// AOV eq. 14 over triples, of visibilities that are not rounded to 8 bits.
-double pictureError(const Compensation& curve, std::span<const TripleValues> triples);
-
 // Objective of the curve's fit.
 enum class CurveMeasure
 {
-	eq14, // AOV's: logarithms of values and of the differences to neighbours
+	eq14, // AOV's: logarithms of values, not rounded to 8 bits, and of the differences to neighbours
 	rmse, // visibility error at the triples' first points
 };
 
 // Error by either measure; for rmse its square.
-double curveError(const Compensation& curve, std::span<const TripleValues> triples, CurveMeasure measure);
+double curveError(const Compensation& curve, std::span<const TripleValues> triples, CurveMeasure measure = CurveMeasure::eq14);
 
 // Starts with `start` and keeps its range; moves knots in ever smaller steps while the error falls. The result is non-decreasing
 // and 0 at 0.

@@ -4,7 +4,7 @@
 #include "volume/drop.h"
 
 #include "core/archive.h"
-#include "core/parallel.h"
+#include "core/lists.h"
 #include "core/work_units.h"
 #include "volume/receivers.h"
 #include "volume/region.h"
@@ -80,8 +80,7 @@ struct DropSearch
 
 	std::span<const glm::dvec3> corners(std::size_t polygon) const
 	{
-		const Occluder& occluder = occluders.polygons[polygon];
-		return occluders.cornersOf(occluder);
+		return occluders.cornersOf(occluders.polygons[polygon]);
 	}
 
 	// Unit; side 0: the front's.
@@ -147,12 +146,6 @@ template <class Visit> bool DropSearch::forReceivers(std::size_t polygon, const 
 	return any;
 }
 
-// The verdicts of a block's polygons.
-void passVerdicts(Archive& archive, DropSearch& search, std::size_t block)
-{
-	search.forBlock(block, [&](std::size_t i) { archive(search.found[i][0], search.found[i][1]); });
-}
-
 // Stages that need a block's verdicts run in the share that has them.
 std::string groupOfBlock(std::size_t block)
 {
@@ -186,7 +179,9 @@ void findReceivers(DropSearch& search, const RunSettings& run)
 	};
 	runStage({"receivers", search.blocks(), [&](std::size_t block) { return kReceiversCost * search.sizeOf(block); },
 			  [&](std::size_t block) { search.forBlock(block, compute); },
-			  [&](std::size_t block, Archive& archive) { passVerdicts(archive, search, block); }, groupOfBlock},
+			  [&](std::size_t block, Archive& archive)
+			  { search.forBlock(block, [&](std::size_t i) { archive(search.found[i][0], search.found[i][1]); }); },
+			  groupOfBlock},
 			 run);
 }
 
@@ -205,12 +200,8 @@ void findInside(DropSearch& search)
 		bool open = is_open_over(search.corners(i), i, side);
 		for (int part = 1; part <= kLifts && !open && search.settings.simplified_m > 0.0; ++part)
 		{
-			std::vector<glm::dvec3> lifted(search.corners(i).begin(), search.corners(i).end());
-			for (glm::dvec3& corner : lifted)
-			{
-				corner += part * search.settings.simplified_m / kLifts * search.normal(i, side);
-			}
-			open = is_open_over(lifted, i, side);
+			const glm::dvec3 lift = part * search.settings.simplified_m / kLifts * search.normal(i, side);
+			open = is_open_over(mapped(search.corners(i), [lift](const glm::dvec3& corner) { return corner + lift; }), i, side);
 		}
 		return open;
 	};
@@ -280,15 +271,12 @@ Dropped collect(DropSearch& search)
 		const bool one_side = search.settings.sides && occluder.two_sided && front != back;
 		search.counts.turned += one_side ? 1 : 0;
 		occluder.two_sided = occluder.two_sided && !one_side;
-		const std::span<const glm::dvec3> corners = search.corners(i);
-		std::vector<glm::dvec3>& to = dropped.occluders.corners;
-		occluder.first_corner = static_cast<uint32_t>(to.size());
-		to.insert(to.end(), corners.begin(), corners.end());
+		std::vector<glm::dvec3> corners(search.corners(i).begin(), search.corners(i).end());
 		if (one_side && back)
 		{
-			std::reverse(to.begin() + occluder.first_corner, to.end());
+			std::reverse(corners.begin(), corners.end());
 		}
-		dropped.occluders.polygons.push_back(occluder);
+		dropped.occluders.add(occluder, corners);
 	}
 	search.counts.kept = dropped.occluders.polygons.size();
 	return dropped;
@@ -368,34 +356,22 @@ void findLeast(DropSearch& search)
 	const double below = search.settings.below;
 	std::vector<std::vector<Loss>> losses(count);
 	std::vector<double> greatest(count, 2.0);
-	ProgressCounter progress(search.run.progress, "contributions", (count + kDropBlock - 1) / kDropBlock);
-	parallelFor((count + kDropBlock - 1) / kDropBlock, search.run.threads,
-				[&](std::size_t block)
-				{
-					std::vector<Loss> here;
-					for (std::size_t i = block * kDropBlock; i < std::min(count, (block + 1) * kDropBlock); ++i)
-					{
-						if (isNeeded(search, i))
-						{
-							here.clear();
-							greatest[i] = lossesOf(search, i, here);
-							losses[i] = here;
-						}
-					}
-					progress.finishOne();
-				});
-	std::vector<uint32_t> order;
-	for (std::size_t i = 0; i < count; ++i)
-	{
-		if (greatest[i] <= below)
-		{
-			order.push_back(static_cast<uint32_t>(i));
-		}
-	}
+	inBlocks(count, kDropBlock, search.run, "contributions",
+			 [&](std::size_t i)
+			 {
+				 thread_local std::vector<Loss> here;
+				 if (isNeeded(search, i))
+				 {
+					 here.clear();
+					 greatest[i] = lossesOf(search, i, here);
+					 losses[i] = here;
+				 }
+			 });
+	std::vector<std::size_t> order = indicesWhere(count, [&](std::size_t i) { return greatest[i] <= below; });
 	std::sort(order.begin(), order.end(),
-			  [&](uint32_t a, uint32_t b) { return greatest[a] != greatest[b] ? greatest[a] < greatest[b] : a < b; });
+			  [&](std::size_t a, std::size_t b) { return greatest[a] != greatest[b] ? greatest[a] < greatest[b] : a < b; });
 	std::vector<double> lost(2 * search.sides.seen.size(), 0.0);
-	for (const uint32_t i : order)
+	for (const std::size_t i : order)
 	{
 		const bool fits = std::all_of(losses[i].begin(), losses[i].end(),
 									  [&](const Loss& loss) { return lost[loss.side] + static_cast<double>(loss.share) <= below; });

@@ -207,15 +207,7 @@ VolumeEvaluator::VolumeEvaluator(const VolumeSet& volumes, const RunSettings& ru
 	data.clamped.resize(count);
 	data.boxes.resize(count);
 	data.rings.resize(volumes.occluders.corners.size());
-	constexpr std::size_t kChunk = 1024;
-	parallelFor((count + kChunk - 1) / kChunk, run.threads,
-				[&](std::size_t chunk)
-				{
-					for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i)
-					{
-						data.shape(i);
-					}
-				});
+	inBlocks(count, 1024, run, nullptr, [&data](std::size_t i) { data.shape(i); });
 	data.build(run);
 }
 
@@ -559,11 +551,6 @@ VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, int dir
 	return mask;
 }
 
-double VolumeEvaluator::maskedVisibility(glm::dvec3 position, glm::dvec3 normal, int directions) const
-{
-	return mask(position, normal, directions, 0.0).visibility;
-}
-
 std::function<double(glm::dvec3 position, glm::dvec3 normal)> visibilityByVolumes(const std::string& path, int directions,
 																				  const RunSettings& run)
 {
@@ -571,7 +558,7 @@ std::function<double(glm::dvec3 position, glm::dvec3 normal)> visibilityByVolume
 	const auto evaluator = std::make_shared<const VolumeEvaluator>(*volumes, run);
 	return [volumes, evaluator, directions](glm::dvec3 position, glm::dvec3 normal)
 	{
-		return directions > 0 ? evaluator->maskedVisibility(position, normal, directions)
+		return directions > 0 ? evaluator->mask(position, normal, directions).visibility
 							  : 1.0 - volumes->compensation.at(evaluator->occlusion(position, normal));
 	};
 }

@@ -59,8 +59,7 @@ public:
 
 	// Fraction of the directions of a frame about the normal (directions.h, mask.glsl) that no polygon within reach covers. δ then
 	// equals the radius of the equivalent reference with linear falloff. Same requirements as maskDirections.
-	double maskedVisibility(glm::dvec3 position, glm::dvec3 normal, int directions) const;
-	VolumeMask mask(glm::dvec3 position, glm::dvec3 normal, int directions, double bias_m) const;
+	VolumeMask mask(glm::dvec3 position, glm::dvec3 normal, int directions, double bias_m = 0.0) const;
 
 private:
 	struct Data;

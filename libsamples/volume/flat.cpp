@@ -246,15 +246,8 @@ public:
 			const std::size_t end = i + 1 < anchors.size() ? anchors[i + 1] : anchors[0] + m_loop.size();
 			split(anchors[i], end);
 		}
-		Loop left;
-		for (std::size_t i = 0; i < m_loop.size(); ++i)
-		{
-			if (m_stays[i] != 0)
-			{
-				left.push_back(m_loop[i]);
-			}
-		}
-		return left;
+		return mapped(indicesWhere(m_loop.size(), [this](std::size_t i) { return m_stays[i] != 0; }),
+					  [this](std::size_t i) { return m_loop[i]; });
 	}
 
 private:

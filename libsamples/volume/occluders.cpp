@@ -28,12 +28,8 @@ std::vector<uint8_t> closedTriangles(const Level& level, const RunSettings& run)
 	OccluderCounts counts;
 	const detail::Soup soup{&level, level.triangles, level.materials, {}};
 	const detail::Surface surface = detail::surfaceOf(soup, settings, run, counts);
-	std::vector<uint8_t> closed(level.triangles.size());
-	for (std::size_t i = 0; i < closed.size(); ++i)
-	{
-		closed[i] = surface.kept[i] != 0 && surface.two_sided[i] == 0 ? 1 : 0;
-	}
-	return closed;
+	return listOf(level.triangles.size(), [&surface](std::size_t i)
+				  { return static_cast<uint8_t>(surface.kept[i] != 0 && surface.two_sided[i] == 0 ? 1 : 0); });
 }
 
 } // namespace nook
@@ -86,14 +82,11 @@ Occluders cutOccluders(const Soup& soup, const Occluders& occluders, const std::
 	Occluders cut;
 	for (std::size_t i = 0; i < occluders.polygons.size(); ++i)
 	{
-		const Occluder& polygon = occluders.polygons[i];
-		Occluder piece = polygon;
-		const std::span<const glm::dvec3> whole = occluders.cornersOf(polygon);
+		Occluder piece = occluders.polygons[i];
+		const std::span<const glm::dvec3> whole = occluders.cornersOf(piece);
 		if (halvesOf(whole, length_m) == 1.0)
 		{
-			piece.first_corner = static_cast<uint32_t>(cut.corners.size());
-			cut.corners.insert(cut.corners.end(), whole.begin(), whole.end());
-			cut.polygons.push_back(piece);
+			cut.add(piece, whole);
 			continue;
 		}
 		for (const std::vector<glm::dvec3>& corners : halvedPolygon(whole, length_m, kMaxOccluderCorners))
@@ -105,10 +98,7 @@ Occluders cutOccluders(const Soup& soup, const Occluders& occluders, const std::
 				continue;
 			}
 			piece.alpha = static_cast<float>(alpha);
-			piece.first_corner = static_cast<uint32_t>(cut.corners.size());
-			piece.corner_count = static_cast<uint32_t>(corners.size());
-			cut.corners.insert(cut.corners.end(), corners.begin(), corners.end());
-			cut.polygons.push_back(piece);
+			cut.add(piece, corners);
 		}
 	}
 	return cut;
@@ -322,29 +312,18 @@ public:
 	}
 
 private:
-	uint32_t sourceOf(uint32_t triangle) const
-	{
-		return m_soup.sources.empty() ? triangle : m_soup.sources[triangle];
-	}
-
 	void addTriangle(uint32_t t, Made& made) const
 	{
 		const glm::uvec3& corners = m_surface.triangles[t];
-		addPolygon(std::array{corners.x, corners.y, corners.z}, t, t, made);
+		addPolygon(std::array{corners.x, corners.y, corners.z}, t, made);
 	}
 
-	// `look`: a triangle with the same material and texture mapping.
-	void addPolygon(std::span<const uint32_t> vertices, uint32_t look, uint32_t lowest, Made& made) const
+	// `look`: a triangle with the same material and texture mapping, the lowest of the polygon.
+	void addPolygon(std::span<const uint32_t> vertices, uint32_t look, Made& made) const
 	{
-		addCorners(mapped(vertices, [this](uint32_t vertex) { return m_positions[vertex]; }), look, lowest, made);
-	}
-
-	void addCorners(std::span<const glm::dvec3> corners, uint32_t look, uint32_t lowest, Made& made) const
-	{
+		const auto corners = mapped(vertices, [this](uint32_t vertex) { return m_positions[vertex]; });
 		Occluder occluder;
-		occluder.first_corner = static_cast<uint32_t>(made.occluders.corners.size());
-		occluder.corner_count = static_cast<uint32_t>(corners.size());
-		occluder.triangle = sourceOf(lowest);
+		occluder.triangle = m_soup.sources.empty() ? look : m_soup.sources[look];
 		occluder.two_sided = m_surface.two_sided[look] != 0;
 		const double alpha = alphaOf(m_soup, look, corners);
 		if (alpha < kClear)
@@ -353,8 +332,7 @@ private:
 			return;
 		}
 		occluder.alpha = static_cast<float>(alpha);
-		made.occluders.corners.insert(made.occluders.corners.end(), corners.begin(), corners.end());
-		made.occluders.polygons.push_back(occluder);
+		made.occluders.add(occluder, corners);
 		made.looks.push_back(look);
 		made.counts.two_sided += occluder.two_sided ? 1U : 0U;
 	}
@@ -425,7 +403,7 @@ private:
 		dropFlatCorners(piece, region.normal);
 		if (piece.size() >= 3)
 		{
-			addPolygon(piece, region.triangles[0], region.triangles[0], made);
+			addPolygon(piece, region.triangles[0], made);
 		}
 	}
 
@@ -584,11 +562,9 @@ Occluding occludersOf(const Level& level, const OccluderSettings& settings, cons
 	{
 		const ProgressCounter stage(run.progress, "proxies");
 		OccluderCounts before;
-		std::vector<uint8_t> oriented = surfaceOf(soup, settings, run, before).two_sided;
-		for (std::size_t i = 0; i < oriented.size(); ++i)
-		{
-			oriented[i] = oriented[i] == 0 && kindOf(soup, i) == 0 ? 1 : 0;
-		}
+		const std::vector<uint8_t> two_sided = surfaceOf(soup, settings, run, before).two_sided;
+		const auto oriented = listOf(two_sided.size(), [&](std::size_t i)
+									 { return static_cast<uint8_t>(two_sided[i] == 0 && kindOf(soup, i) == 0 ? 1 : 0); });
 		proxies = proxiesOf(level, oriented, settings.detail * settings.distance_m, run);
 		soup = {&level, proxies.triangles, proxies.materials, proxies.sources};
 		counts.deviation_m = proxies.deviation_m;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volume/packed.h"
 
+#include "core/lists.h"
 #include "core/parallel.h"
 #include "volume/volumes.h"
 
@@ -29,18 +30,6 @@ double leastStep(double distance_m)
 	return std::min(0x1p-20, std::ldexp(1.0, std::ilogb(distance_m) - 14));
 }
 
-struct Box
-{
-	glm::dvec3 least{1e300};
-	glm::dvec3 most{-1e300};
-
-	void add(glm::dvec3 point)
-	{
-		least = glm::min(least, point);
-		most = glm::max(most, point);
-	}
-};
-
 // Origin and step of 16-bit coordinates. Steps are powers of two and origins multiples of them, so that coordinates that are such
 // multiples are preserved, and decoding does not round.
 struct Frame
@@ -48,7 +37,7 @@ struct Frame
 	glm::dvec3 origin{0.0};
 	glm::dvec3 step{0.0};
 
-	Frame(const Box& box, double least_step)
+	Frame(const Bounds& box, double least_step)
 	{
 		for (int i = 0; i < 3; ++i)
 		{
@@ -120,7 +109,7 @@ void store(float (&to)[3], glm::dvec3 from)
 }
 
 // Rounded outward, so that the box still contains everything.
-void storeBox(nook_volumes::Cluster& cluster, const Box& box, glm::dvec3 origin)
+void storeBox(nook_volumes::Cluster& cluster, const Bounds& box, glm::dvec3 origin)
 {
 	constexpr float kInfinite = std::numeric_limits<float>::infinity();
 	store(cluster.least, box.least - origin);
@@ -130,17 +119,6 @@ void storeBox(nook_volumes::Cluster& cluster, const Box& box, glm::dvec3 origin)
 		cluster.least[i] = std::nextafter(cluster.least[i], -kInfinite);
 		cluster.most[i] = std::nextafter(cluster.most[i], kInfinite);
 	}
-}
-
-// Normal of the front with a length of twice the area.
-glm::dvec3 areaVector(std::span<const glm::dvec3> corners)
-{
-	glm::dvec3 sum(0.0);
-	for (std::size_t i = 2; i < corners.size(); ++i)
-	{
-		sum += glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
-	}
-	return sum;
 }
 
 // A cluster's part of all arrays; ranges count from 0.
@@ -165,7 +143,7 @@ public:
 			add(m_volumes.occluders.polygons[m_cluster.first_polygon + i]);
 		}
 		PackedPart part;
-		const Frame points(m_points.empty() ? Box{glm::dvec3(0.0), glm::dvec3(0.0)} : m_box, leastStep(m_volumes.distance_m));
+		const Frame points(m_points.empty() ? Bounds{glm::dvec3(0.0), glm::dvec3(0.0)} : m_box, leastStep(m_volumes.distance_m));
 		store(part.cluster.origin, m_frame.origin);
 		store(part.cluster.step, m_frame.step);
 		storeBox(part.cluster, m_box, m_frame.origin);
@@ -184,14 +162,14 @@ public:
 	}
 
 private:
-	Box cornerBox() const
+	Bounds cornerBox() const
 	{
-		Box box;
+		Bounds box;
 		for (uint32_t i = 0; i < m_cluster.polygon_count; ++i)
 		{
 			for (const glm::dvec3 corner : m_volumes.occluders.cornersOf(m_volumes.occluders.polygons[m_cluster.first_polygon + i]))
 			{
-				box.add(corner);
+				include(box, corner);
 			}
 		}
 		return box;
@@ -283,7 +261,7 @@ private:
 		prismOf(corners, frontOf(corners), shapeOf(m_volumes, kept), points);
 		for (const glm::dvec3 point : points)
 		{
-			m_box.add(point);
+			include(m_box, point);
 		}
 		if (m_prisms)
 		{
@@ -330,7 +308,7 @@ private:
 	Frame m_frame;
 	PackedVolumes m_made;
 	std::vector<glm::dvec3> m_corners;  // of the last polygon, decoded
-	Box m_box;                          // bounds of all volume points
+	Bounds m_box;                       // bounds of all volume points
 	std::vector<glm::dvec3> m_points;   // of prisms
 	std::vector<uint16_t> m_polygon_of; // polygon of each point
 };
@@ -383,11 +361,8 @@ PackedVolumes packVolumes(const VolumeSet& volumes, const PackSettings& settings
 	for (std::size_t first = 0; first < volumes.clusters.size(); first += kBatch)
 	{
 		std::vector<PackedPart> parts(std::min(kBatch, volumes.clusters.size() - first));
-		const auto pack = [&](std::size_t i)
-		{
-			parts[i] = ClusterPacker(volumes, volumes.clusters[first + i], settings.prisms).pack();
-		};
-		parallelFor(parts.size(), run.threads, pack);
+		parallelFor(parts.size(), run.threads,
+					[&](std::size_t i) { parts[i] = ClusterPacker(volumes, volumes.clusters[first + i], settings.prisms).pack(); });
 		for (PackedPart& part : parts)
 		{
 			append(packed, part);
@@ -509,13 +484,7 @@ public:
 	// then of equal extent while too wide, as long as enough polygons remain.
 	void sort(std::span<uint32_t> order, std::size_t before, std::vector<std::size_t>& ends) const
 	{
-		glm::dvec3 least(1e300);
-		glm::dvec3 most(-1e300);
-		for (const uint32_t i : order)
-		{
-			least = glm::min(least, m_items[i].middle);
-			most = glm::max(most, m_items[i].middle);
-		}
+		const auto [least, most] = boundsAround(mapped(order, [this](uint32_t i) { return m_items[i].middle; }));
 		std::size_t left = 0;
 		if (order.size() > m_most)
 		{
@@ -525,11 +494,8 @@ public:
 				 order.size() > m_fewest && most[axis] - least[axis] > m_limit[axis])
 		{
 			const double middle = 0.5 * (least[axis] + most[axis]);
-			const auto before_middle = [this, axis, middle](uint32_t i)
-			{
-				return m_items[i].middle[axis] < middle;
-			};
-			const auto end = std::partition(order.begin(), order.end(), before_middle);
+			const auto end = std::partition(order.begin(), order.end(),
+											[this, axis, middle](uint32_t i) { return m_items[i].middle[axis] < middle; });
 			left = static_cast<std::size_t>(end - order.begin());
 		}
 		if (left == 0 || left == order.size())
@@ -581,11 +547,7 @@ Occluders reordered(const Occluders& occluders, std::span<const uint32_t> order)
 	made.polygons.reserve(order.size());
 	for (const uint32_t i : order)
 	{
-		Occluder polygon = occluders.polygons[i];
-		const std::span<const glm::dvec3> corners = occluders.cornersOf(polygon);
-		polygon.first_corner = static_cast<uint32_t>(made.corners.size());
-		made.corners.insert(made.corners.end(), corners.begin(), corners.end());
-		made.polygons.push_back(polygon);
+		made.add(occluders.polygons[i], occluders.cornersOf(occluders.polygons[i]));
 	}
 	return made;
 }
@@ -597,8 +559,7 @@ Bounds boundsAround(std::span<const glm::dvec3> points)
 	Bounds bounds;
 	for (const glm::dvec3& point : points)
 	{
-		bounds.least = glm::min(bounds.least, point);
-		bounds.most = glm::max(bounds.most, point);
+		include(bounds, point);
 	}
 	return bounds;
 }
@@ -618,35 +579,22 @@ void clusterVolumes(VolumeSet& volumes, const ClusterSettings& settings, const R
 	assert(settings.polygons >= 1 && settings.polygons <= 2048);
 	const ProgressCounter stage(run.progress, "clusters");
 	const std::size_t count = volumes.occluders.polygons.size();
-	constexpr std::size_t kBlock = 4096;
-	const std::size_t blocks = (count + kBlock - 1) / kBlock;
 	std::vector<Item> items(count);
-	const auto measure = [&](std::size_t block)
-	{
-		for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i)
-		{
-			items[i] = itemOf(volumes, volumes.occluders.polygons[i]);
-		}
-	};
-	parallelFor(blocks, run.threads, measure);
+	inBlocks(count, 4096, run, nullptr, [&](std::size_t i) { items[i] = itemOf(volumes, volumes.occluders.polygons[i]); });
 	std::vector<uint32_t> order(count);
 	std::iota(order.begin(), order.end(), 0U);
 	std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return items[a].kind > items[b].kind; });
 
 	std::vector<std::size_t> ends;
-	for (std::size_t first = 0; first < count;)
+	const auto sort = [&](std::size_t first, std::size_t last)
 	{
-		std::size_t last = first;
-		while (last < count && items[order[last]].kind == items[order[first]].kind)
-		{
-			++last;
-		}
 		const int kind = items[order[first]].kind;
 		const Sorter sorter(items, settings.polygons, kind < 4 ? settings.fewest : settings.fewest_large,
 							limitOf(kind, volumes.distance_m));
 		sorter.sort(std::span(order).subspan(first, last - first), first, ends);
-		first = last;
-	}
+	};
+	forRuns(
+		order, [&](uint32_t a, uint32_t b) { return items[a].kind == items[b].kind; }, sort);
 	volumes.occluders = reordered(volumes.occluders, order);
 	volumes.clusters.assign(ends.size(), {});
 	const auto bound = [&](std::size_t i)
@@ -657,8 +605,8 @@ void clusterVolumes(VolumeSet& volumes, const ClusterSettings& settings, const R
 		for (std::size_t polygon = first; polygon < ends[i]; ++polygon)
 		{
 			const Bounds one = volumeBox(volumes, polygon);
-			box.least = glm::min(box.least, one.least);
-			box.most = glm::max(box.most, one.most);
+			include(box, one.least);
+			include(box, one.most);
 		}
 		cluster = {static_cast<uint32_t>(first), static_cast<uint32_t>(ends[i] - first), box.least, box.most};
 	};

@@ -72,11 +72,9 @@ struct Diagonal
 class Merger
 {
 public:
-	Merger(std::span<const glm::dvec2> points, std::size_t most_corners) : m_points(points), m_most_corners(most_corners) {}
-
-	void add(const Piece& triangle)
+	Merger(std::span<const glm::dvec2> points, std::vector<Piece> triangles, std::size_t most_corners)
+		: m_points(points), m_most_corners(most_corners), m_pieces(std::move(triangles))
 	{
-		m_pieces.push_back(triangle);
 	}
 
 	// Removes the longest diagonals first, so that the pieces stay compact.
@@ -171,8 +169,7 @@ std::vector<Piece> mergeInside(Triangulation& mesh, std::span<const glm::dvec2> 
 		face->info() = kUnknown;
 	}
 	findDepths(mesh);
-	Merger merger(points, most_corners);
-	int inside = 0;
+	std::vector<Piece> triangles;
 	for (Triangulation::Face_handle face : mesh.all_face_handles())
 	{
 		if (mesh.is_infinite(face) || face->info() % 2 == 0)
@@ -180,8 +177,8 @@ std::vector<Piece> mergeInside(Triangulation& mesh, std::span<const glm::dvec2> 
 			face->info() = kUnknown;
 			continue;
 		}
-		merger.add({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
-		face->info() = inside++;
+		face->info() = static_cast<int>(triangles.size());
+		triangles.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
 	}
 	std::vector<Diagonal> diagonals;
 	for (Triangulation::Face_handle face : mesh.finite_face_handles())
@@ -199,7 +196,7 @@ std::vector<Piece> mergeInside(Triangulation& mesh, std::span<const glm::dvec2> 
 			}
 		}
 	}
-	return merger.merge(std::move(diagonals));
+	return Merger(points, std::move(triangles), most_corners).merge(std::move(diagonals));
 }
 
 } // namespace
@@ -261,12 +258,7 @@ std::vector<Piece> joinTriangles(std::span<const glm::dvec2> points, std::vector
 			}
 		}
 	}
-	Merger merger(points, most_corners);
-	for (const Piece& triangle : triangles)
-	{
-		merger.add(triangle);
-	}
-	return merger.merge(std::move(diagonals));
+	return Merger(points, std::move(triangles), most_corners).merge(std::move(diagonals));
 }
 
 bool isConvex(std::span<const glm::dvec2> loop)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: Morgan McGuire, Ambient Occlusion Volumes, 2010 (AOV), §5.2.
+#include "core/lists.h"
 #include "volume/volumes.h"
 
 #include <glm/geometric.hpp>
@@ -87,13 +88,19 @@ VolumeShape shapeOf(const VolumeSet& volumes, const Occluder& polygon)
 			static_cast<double>(polygon.side_reach) / static_cast<double>(polygon.reach)};
 }
 
-glm::dvec3 frontOf(std::span<const glm::dvec3> corners)
+glm::dvec3 areaVector(std::span<const glm::dvec3> corners)
 {
 	glm::dvec3 sum(0.0);
 	for (std::size_t i = 1; i + 1 < corners.size(); ++i)
 	{
 		sum += glm::cross(corners[i] - corners[0], corners[i + 1] - corners[0]);
 	}
+	return sum;
+}
+
+glm::dvec3 frontOf(std::span<const glm::dvec3> corners)
+{
+	const glm::dvec3 sum = areaVector(corners);
 	const double largest = std::max({std::fabs(sum.x), std::fabs(sum.y), std::fabs(sum.z)});
 	return largest > 0.0 ? glm::normalize(sum / largest) : glm::dvec3(0.0); // scaled, because squares of small areas underflow
 }
@@ -159,13 +166,8 @@ std::vector<std::vector<glm::dvec3>> halvedPolygon(std::span<const glm::dvec3> c
 {
 	const auto [x, y] = axesOf(corners);
 	const glm::dvec3 origin = corners[0]; // preserves precision far from the world's origin
-	Corners whole;
-	for (const glm::dvec3 corner : corners)
-	{
-		whole.push_back(corner - origin);
-	}
 	const double near_m = 1e-9 * longest_m;
-	std::vector<Corners> open{whole};
+	std::vector<Corners> open{mapped(corners, [origin](const glm::dvec3& corner) { return corner - origin; })};
 	std::vector<Corners> done;
 	while (!open.empty())
 	{
@@ -197,11 +199,7 @@ std::vector<std::vector<glm::dvec3>> halvedPolygon(std::span<const glm::dvec3> c
 		}
 		else if (piece.size() >= 3)
 		{
-			for (glm::dvec3& corner : piece)
-			{
-				corner += origin;
-			}
-			done.push_back(std::move(piece));
+			done.push_back(mapped(piece, [origin](const glm::dvec3& corner) { return corner + origin; }));
 		}
 	}
 	return done;

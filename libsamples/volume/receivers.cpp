@@ -2,6 +2,7 @@
 #include "volume/receivers.h"
 
 #include "core/error.h"
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "scene/camera_choice.h"
@@ -48,6 +49,13 @@ std::array<glm::dvec3, 3> cornersOf(const Level& level, std::size_t triangle)
 glm::dvec3 acrossOf(const std::array<glm::dvec3, 3>& corners)
 {
 	return glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+}
+
+// Unit normal of a side.
+glm::dvec3 normalOf(const std::array<glm::dvec3, 3>& corners, bool front)
+{
+	const glm::dvec3 across = acrossOf(corners);
+	return (front ? 1.0 : -1.0) / glm::length(across) * across;
 }
 
 // Two unit vectors orthogonal to a unit normal (T. Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
@@ -148,11 +156,10 @@ void leaveOutOfSight(const Tracer& tracer, const SideSettings& settings, Receive
 				[&](std::size_t i)
 				{
 					const std::array<glm::dvec3, 3> corners = cornersOf(level, i);
-					const glm::dvec3 across = acrossOf(corners);
 					for (unsigned side = 0; side < 2 && sides.there[i] != 0; ++side)
 					{
 						const auto bit = static_cast<uint8_t>(1U << side);
-						const glm::dvec3 normal = (side == 0 ? 1.0 : -1.0) / glm::length(across) * across;
+						const glm::dvec3 normal = normalOf(corners, side == 0);
 						if ((sides.seen[i] & bit) != 0 && (met[i] & bit) == 0 &&
 							(isBehind(settings.boxes, normal, corners[0]) ||
 							 !isInSight(tracer, settings.boxes, static_cast<uint32_t>(i), normal, settings.seen_rays)))
@@ -183,29 +190,20 @@ void leaveOutInside(const Tracer& tracer, ReceiverSides& sides, const RunSetting
 	const Bounds& bounds = tracer.bounds();
 	const double step_m = 0.005 * glm::length(bounds.most - bounds.least);
 	std::vector<uint8_t> inside(level.triangles.size(), 0);
-	ProgressCounter progress(run.progress, "insides", (inside.size() + 1023) / 1024);
-	parallelFor((inside.size() + 1023) / 1024, run.threads,
-				[&](std::size_t block)
-				{
-					for (std::size_t i = block * 1024; i < std::min(inside.size(), (block + 1) * 1024); ++i)
-					{
-						const std::array<glm::dvec3, 3> corners = cornersOf(level, i);
-						const glm::dvec3 across = acrossOf(corners);
-						for (unsigned side = 0; side < 2 && sides.there[i] != 0; ++side)
-						{
-							if ((sides.seen[i] & (1U << side)) == 0)
-							{
-								continue;
-							}
-							const glm::dvec3 normal = (side == 0 ? 1.0 : -1.0) / glm::length(across) * across;
-							inside[i] |= static_cast<uint8_t>(
-								isOpen(tracer, sides.materials, corners, normal, step_m, static_cast<uint32_t>(2 * i + side))
-									? 0U
-									: 1U << side);
-						}
-					}
-					progress.finishOne();
-				});
+	inBlocks(inside.size(), 1024, run, "insides",
+			 [&](std::size_t i)
+			 {
+				 const std::array<glm::dvec3, 3> corners = cornersOf(level, i);
+				 for (unsigned side = 0; side < 2 && sides.there[i] != 0; ++side)
+				 {
+					 const auto turn = static_cast<uint32_t>(2 * i + side);
+					 const bool asked = (sides.seen[i] & (1U << side)) != 0;
+					 if (asked && !isOpen(tracer, sides.materials, corners, normalOf(corners, side == 0), step_m, turn))
+					 {
+						 inside[i] |= static_cast<uint8_t>(1U << side);
+					 }
+				 }
+			 });
 	for (std::size_t i = 0; i < inside.size(); ++i)
 	{
 		sides.inside_sides += static_cast<uint64_t>(std::popcount(inside[i]));
@@ -337,16 +335,7 @@ private:
 	std::vector<double> m_until;
 };
 
-// On a random side, if that is in the open.
-void addIfOpen(const Tracer& tracer, const MaterialSides& materials, glm::dvec3 position, glm::dvec3 normal,
-			   std::vector<ReferencePoint>& points)
-{
-	if (isOpen(tracer, materials, position, normal, static_cast<uint32_t>(points.size())))
-	{
-		points.push_back({position, normal, 0.0});
-	}
-}
-
+// On random sides, where those are in the open.
 void addSurfaces(const Tracer& tracer, double distance_m, const ReceiverSettings& settings, const MaterialSides& materials,
 				 std::vector<ReferencePoint>& points)
 {
@@ -375,7 +364,11 @@ void addSurfaces(const Tracer& tracer, double distance_m, const ReceiverSettings
 		const std::size_t material = level.materials[triangle];
 		const bool back = level.material_list[material].two_sided || materials.oriented[material] == 0; // see receiverSides()
 		const glm::dvec3 normal = across * ((back && random.below(2) == 0 ? -1.0 : 1.0) / area);
-		addIfOpen(tracer, materials, pointOf({a, b, c}, u, v), normal, points);
+		const glm::dvec3 position = pointOf({a, b, c}, u, v);
+		if (isOpen(tracer, materials, position, normal, static_cast<uint32_t>(points.size())))
+		{
+			points.push_back({position, normal, 0.0});
+		}
 	}
 }
 
@@ -483,8 +476,7 @@ bool seesReceiver(const Tracer& tracer, const ReceiverSides& sides, std::span<co
 			return false;
 		}
 		// A large triangle may be visible elsewhere but not here, such as a floor inside a column.
-		const glm::dvec3 across = acrossOf(cornersOf(level, hit.triangle));
-		return isOpen(tracer, sides.materials, from + hit.distance * way, (hit.front ? 1.0 : -1.0) / glm::length(across) * across,
+		return isOpen(tracer, sides.materials, from + hit.distance * way, normalOf(cornersOf(level, hit.triangle), hit.front),
 					  turn);
 	};
 	return anyPoint(corners, step_m, turn,
@@ -524,29 +516,23 @@ ReceiverSides receiverSides(const Tracer& tracer, const SideSettings& settings, 
 
 std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, const RunSettings& run)
 {
-	constexpr std::size_t kBlock = 256;
 	constexpr double kNeeded = 0.005; // of a piece's area
 	const Level& level = tracer.level();
 	const std::size_t count = level.triangles.size();
 	const ReceiverSides sides = receiverSides(tracer, {}, run);
 	std::vector<double> areas(count);
 	std::vector<double> needed(count, 0.0);
-	ProgressCounter progress(run.progress, "backs", (count + kBlock - 1) / kBlock);
-	parallelFor((count + kBlock - 1) / kBlock, run.threads,
-				[&](std::size_t block)
-				{
-					for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i)
-					{
-						const std::array<glm::dvec3, 3> corners = cornersOf(level, i);
-						const glm::dvec3 across = acrossOf(corners);
-						areas[i] = glm::length(across);
-						const bool used = sides.there[i] != 0 && ((sides.seen[i] & kBackSeen) != 0 ||
-																  seesReceiver(tracer, sides, corners, -across / areas[i],
-																			   distance_m, distance_m, static_cast<uint32_t>(i)));
-						needed[i] = used ? areas[i] : 0.0;
-					}
-					progress.finishOne();
-				});
+	inBlocks(count, 256, run, "backs",
+			 [&](std::size_t i)
+			 {
+				 const std::array<glm::dvec3, 3> corners = cornersOf(level, i);
+				 const glm::dvec3 across = acrossOf(corners);
+				 areas[i] = glm::length(across);
+				 const bool used = sides.there[i] != 0 && ((sides.seen[i] & kBackSeen) != 0 ||
+														   seesReceiver(tracer, sides, corners, -across / areas[i], distance_m,
+																		distance_m, static_cast<uint32_t>(i)));
+				 needed[i] = used ? areas[i] : 0.0;
+			 });
 	const std::vector<uint32_t> first = weldPositions(level.positions, run.threads);
 	Groups pieces(level.positions.size());
 	for (const glm::uvec3& t : level.triangles)
@@ -559,13 +545,12 @@ std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, const Ru
 	{
 		sums[pieces.rootOf(first[level.triangles[i].x])] += glm::dvec2(areas[i], needed[i]);
 	}
-	std::vector<uint8_t> idle(count);
-	for (std::size_t i = 0; i < count; ++i)
+	const auto isIdle = [&](std::size_t i)
 	{
 		const glm::dvec2 sum = sums[pieces.rootOf(first[level.triangles[i].x])];
-		idle[i] = level.material_list[level.materials[i]].alpha_mode == AlphaMode::opaque && sum.y <= kNeeded * sum.x ? 1 : 0;
-	}
-	return idle;
+		return level.material_list[level.materials[i]].alpha_mode == AlphaMode::opaque && sum.y <= kNeeded * sum.x;
+	};
+	return listOf(count, [&](std::size_t i) { return static_cast<uint8_t>(isIdle(i) ? 1 : 0); });
 }
 
 std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distance_m, const ReceiverSettings& settings,
@@ -582,19 +567,10 @@ std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distanc
 
 std::vector<double> sumsAt(const VolumeSet& volumes, std::span<const ReferencePoint> points, const RunSettings& run)
 {
-	constexpr std::size_t kBlock = 64;
 	const VolumeEvaluator evaluator(volumes, run);
 	std::vector<double> sums(points.size());
-	ProgressCounter progress(run.progress, "sums", (points.size() + kBlock - 1) / kBlock);
-	parallelFor((points.size() + kBlock - 1) / kBlock, run.threads,
-				[&](std::size_t block)
-				{
-					for (std::size_t i = block * kBlock; i < std::min(points.size(), (block + 1) * kBlock); ++i)
-					{
-						sums[i] = evaluator.occlusion(points[i].position, points[i].normal);
-					}
-					progress.finishOne();
-				});
+	inBlocks(points.size(), 64, run, "sums",
+			 [&](std::size_t i) { sums[i] = evaluator.occlusion(points[i].position, points[i].normal); });
 	return sums;
 }
 

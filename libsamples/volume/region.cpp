@@ -2,6 +2,7 @@
 #include "volume/region.h"
 
 #include "core/convex_clip.h"
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/parallel.h"
 
@@ -90,15 +91,8 @@ std::size_t nodesOf(std::size_t n)
 
 std::vector<uint32_t> indicesOf(std::span<const uint8_t> counted)
 {
-	std::vector<uint32_t> indices;
-	for (std::size_t i = 0; i < counted.size(); ++i)
-	{
-		if (counted[i] != 0)
-		{
-			indices.push_back(static_cast<uint32_t>(i));
-		}
-	}
-	return indices;
+	return mapped(indicesWhere(counted.size(), [counted](std::size_t i) { return counted[i] != 0; }),
+				  [](std::size_t i) { return static_cast<uint32_t>(i); });
 }
 
 } // namespace
@@ -264,14 +258,8 @@ public:
 	Builder(TriangleTree& tree, const Level& level, int threads)
 		: m_nodes(tree.m_nodes), m_triangles(tree.m_triangles), m_level(level), m_middles(level.triangles.size())
 	{
-		parallelFor((m_triangles.size() + kTreeBlock - 1) / kTreeBlock, threads,
-					[&](std::size_t block)
-					{
-						for (std::size_t i = block * kTreeBlock; i < std::min(m_triangles.size(), (block + 1) * kTreeBlock); ++i)
-						{
-							findMiddle(m_triangles[i]);
-						}
-					});
+		inBlocks(m_triangles.size(), kTreeBlock, {threads, {}, nullptr}, nullptr,
+				 [&](std::size_t i) { findMiddle(m_triangles[i]); });
 	}
 
 	// Fills one node and returns the ranges of its halves.

@@ -3,7 +3,6 @@
 
 #include "core/lists.h"
 #include "core/math.h"
-#include "core/parallel.h"
 #include "scene/topology.h"
 #include "volume/evaluate.h"
 
@@ -11,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace nook::detail
 {
@@ -212,12 +210,6 @@ double greatest(glm::dvec3 v)
 	return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
 }
 
-void inBlocks(std::size_t count, int threads, const std::function<void(std::size_t, std::size_t)>& body)
-{
-	parallelFor((count + kSurfaceBlock - 1) / kSurfaceBlock, threads,
-				[&](std::size_t block) { body(block * kSurfaceBlock, std::min(count, (block + 1) * kSurfaceBlock)); });
-}
-
 // Half-edges by their lower vertex.
 struct EdgeTable
 {
@@ -291,16 +283,9 @@ public:
 			}
 		}
 		std::sort(edges.begin(), edges.end());
-		for (std::size_t begin = 0; begin < edges.size();)
-		{
-			std::size_t end = begin + 1;
-			while (end < edges.size() && edges[end].to == edges[begin].to)
-			{
-				++end;
-			}
-			findAtEdge(vertex, std::span(edges).subspan(begin, end - begin));
-			begin = end;
-		}
+		forRuns(
+			edges, [](const AtEdge& a, const AtEdge& b) { return a.to == b.to; },
+			[&](std::size_t begin, std::size_t end) { findAtEdge(vertex, std::span(edges).subspan(begin, end - begin)); });
 	}
 
 	uint32_t link(std::size_t half_edge) const
@@ -320,28 +305,16 @@ private:
 	void findAtEdge(uint32_t vertex, std::span<AtEdge> run)
 	{
 		dropCopies(vertex, run);
-		for (std::size_t begin = 0; begin < run.size();)
-		{
-			std::size_t end = begin + 1;
-			while (end < run.size() && run[end].kind == run[begin].kind)
-			{
-				++end;
-			}
-			joinKind(run.subspan(begin, end - begin));
-			begin = end;
-		}
+		forRuns(
+			run, [](const AtEdge& a, const AtEdge& b) { return a.kind == b.kind; },
+			[&](std::size_t begin, std::size_t end) { joinKind(run.subspan(begin, end - begin)); });
 	}
 
 	// Among triangles with the same three corners the first is kept: opaque before masked, then the lowest number. All three edges
 	// give the same verdict; it is recorded at one.
 	void dropCopies(uint32_t vertex, std::span<AtEdge> run)
 	{
-		std::vector<AtEdge*> by_third;
-		by_third.reserve(run.size());
-		for (AtEdge& edge : run)
-		{
-			by_third.push_back(&edge);
-		}
+		std::vector<const AtEdge*> by_third = mapped(run, [](const AtEdge& edge) { return &edge; });
 		std::sort(by_third.begin(), by_third.end(),
 				  [](const AtEdge* a, const AtEdge* b) { return a->third != b->third ? a->third < b->third : a < b; });
 		const AtEdge* first = nullptr;
@@ -544,19 +517,16 @@ void findSides(const Soup& soup, const OccluderSettings& settings, const Finder&
 }
 
 // Unlinks neighbours if one of them is dropped or their sides differ.
-void forgetStrangers(Surface& surface, int threads)
+void forgetStrangers(Surface& surface, const RunSettings& run)
 {
-	inBlocks(surface.triangles.size(), threads,
-			 [&](std::size_t begin, std::size_t end)
+	inBlocks(surface.opposite.size(), 3 * kSurfaceBlock, run, nullptr,
+			 [&](std::size_t h)
 			 {
-				 for (std::size_t h = 3 * begin; h < 3 * end; ++h)
+				 const uint32_t across = surface.opposite[h];
+				 if (across != kNone && (surface.kept[h / 3] == 0 || surface.kept[across / 3] == 0 ||
+										 surface.two_sided[h / 3] != surface.two_sided[across / 3]))
 				 {
-					 const uint32_t across = surface.opposite[h];
-					 if (across != kNone && (surface.kept[h / 3] == 0 || surface.kept[across / 3] == 0 ||
-											 surface.two_sided[h / 3] != surface.two_sided[across / 3]))
-					 {
-						 surface.opposite[h] = kNone;
-					 }
+					 surface.opposite[h] = kNone;
 				 }
 			 });
 }
@@ -565,16 +535,10 @@ void forgetStrangers(Surface& surface, int threads)
 
 void addHoles(std::span<const OpenEdge> edges, std::span<const glm::dvec3> positions, std::span<double> holes)
 {
-	for (std::size_t begin = 0; begin < edges.size();)
-	{
-		std::size_t end = begin + 1;
-		while (end < edges.size() && edges[end].piece == edges[begin].piece)
-		{
-			++end;
-		}
-		holes[edges[begin].piece] += Walk(edges.subspan(begin, end - begin), positions).area();
-		begin = end;
-	}
+	forRuns(
+		edges, [](const OpenEdge& a, const OpenEdge& b) { return a.piece == b.piece; },
+		[&](std::size_t begin, std::size_t end)
+		{ holes[edges[begin].piece] += Walk(edges.subspan(begin, end - begin), positions).area(); });
 }
 
 double coverageOf(const Level& level, const Material& material, std::span<const glm::dvec2> corners)
@@ -633,28 +597,19 @@ Surface surfaceOf(const Soup& soup, const OccluderSettings& settings, const RunS
 	surface.kept.assign(count, 1);
 	surface.two_sided.assign(count, 0);
 	surface.opposite.assign(3 * count, kNone);
-	inBlocks(count, run.threads,
-			 [&](std::size_t begin, std::size_t end)
+	inBlocks(count, kSurfaceBlock, run, nullptr,
+			 [&](std::size_t i)
 			 {
-				 for (std::size_t i = begin; i < end; ++i)
-				 {
-					 const glm::uvec3& t = soup.triangles[i];
-					 surface.triangles[i] = {first[t.x], first[t.y], first[t.z]};
-					 const glm::dvec3 area = areaOf(positions, surface.triangles[i]);
-					 surface.kept[i] = glm::dot(area, area) > 0.0 ? 1 : 0;
-				 }
+				 const glm::uvec3& t = soup.triangles[i];
+				 surface.triangles[i] = {first[t.x], first[t.y], first[t.z]};
+				 const glm::dvec3 area = areaOf(positions, surface.triangles[i]);
+				 surface.kept[i] = glm::dot(area, area) > 0.0 ? 1 : 0;
 			 });
 	Finder finder(soup, settings, surface);
 	{
 		const EdgeTable table(surface.triangles, positions.size());
-		inBlocks(positions.size(), run.threads,
-				 [&](std::size_t begin, std::size_t end)
-				 {
-					 for (std::size_t vertex = begin; vertex < end; ++vertex)
-					 {
-						 finder.findAtVertex(table, static_cast<uint32_t>(vertex));
-					 }
-				 });
+		inBlocks(positions.size(), kSurfaceBlock, run, nullptr,
+				 [&](std::size_t vertex) { finder.findAtVertex(table, static_cast<uint32_t>(vertex)); });
 	}
 	findSides(soup, settings, finder, surface, counts);
 	for (std::size_t i = 0; i < count; ++i)
@@ -664,7 +619,7 @@ Surface surfaceOf(const Soup& soup, const OccluderSettings& settings, const RunS
 		counts.reversed += finder.dropped(i) == 2 ? 1U : 0U;
 		surface.kept[i] = finder.dropped(i) == 0 ? surface.kept[i] : 0;
 	}
-	forgetStrangers(surface, run.threads);
+	forgetStrangers(surface, run);
 	return surface;
 }
 

@@ -70,11 +70,7 @@ struct Asked
 // Order of the points that keeps neighbours close together.
 std::vector<uint32_t> nearOrder(const std::vector<ReferencePoint>& points)
 {
-	glm::dvec3 least(1e300);
-	for (const ReferencePoint& point : points)
-	{
-		least = glm::min(least, point.position);
-	}
+	const glm::dvec3 least = boundsAround(mapped(points, [](const ReferencePoint& point) { return point.position; })).least;
 	const auto positions = mapped(points, [&least](const ReferencePoint& point) { return glm::vec3(point.position - least); });
 	std::vector<uint32_t> places(points.size());
 	if (!points.empty())
@@ -89,15 +85,6 @@ std::vector<uint32_t> nearOrder(const std::vector<ReferencePoint>& points)
 	return order;
 }
 
-void shuffle(std::vector<ReferencePoint>& points)
-{
-	Random random(1, 0x7219);
-	for (uint32_t i = 0; i < points.size(); ++i)
-	{
-		std::swap(points[i], points[random.below(i + 1)]);
-	}
-}
-
 // Drops random points if all of them would have more than `most_shares` shares; returns how many.
 std::size_t leaveOut(const VolumeEvaluator& evaluator, std::size_t most_shares, const RunSettings& run,
 					 std::vector<ReferencePoint>& points)
@@ -106,7 +93,11 @@ std::size_t leaveOut(const VolumeEvaluator& evaluator, std::size_t most_shares, 
 	{
 		return 0;
 	}
-	shuffle(points);
+	Random random(1, 0x7219);
+	for (uint32_t i = 0; i < points.size(); ++i)
+	{
+		std::swap(points[i], points[random.below(i + 1)]);
+	}
 	std::vector<std::size_t> counts(kSample);
 	parallelFor(kSample, run.threads,
 				[&](std::size_t i)
@@ -356,12 +347,7 @@ void Shrinking::look(int way, const TrimAllowances& allowances, double price, St
 	{
 		return;
 	}
-	thread_local std::vector<Place> places;
-	places.clear();
-	for (uint32_t i = 0; i < m_left; ++i)
-	{
-		places.push_back(placeOf(i));
-	}
+	std::vector<Place> places = listOf(m_left, [&](std::size_t i) { return placeOf(static_cast<uint32_t>(i)); });
 	std::make_heap(places.begin(), places.end());
 	double loss = 0.0;
 	while (!places.empty())

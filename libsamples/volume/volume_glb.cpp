@@ -192,11 +192,7 @@ private:
 			const std::size_t mesh = m_meshes.size();
 			const double(&origin)[3] = prisms() ? cluster.vertex_origin : cluster.origin;
 			const float(&step)[3] = prisms() ? cluster.vertex_step : cluster.step;
-			Json translation = Json::array();
-			for (int i = 0; i < 3; ++i)
-			{
-				translation.push_back(origin[i] - m_header.origin[i]);
-			}
+			const Json translation{origin[0] - m_header.origin[0], origin[1] - m_header.origin[1], origin[2] - m_header.origin[2]};
 			m_nodes.push_back({{"mesh", mesh}, {"translation", translation}, {"scale", step}});
 			m_meshes.push_back(
 				{{"primitives",
@@ -348,13 +344,6 @@ uint32_t wordAt(std::string_view bytes, std::size_t at)
 	return word;
 }
 
-// The file's JSON, if nlohmann-json accepts it.
-nlohmann::json jsonOf(std::string_view bytes)
-{
-	const std::string_view text = bytes.substr(20, wordAt(bytes, 12));
-	return looseJson(text);
-}
-
 // A string of the JSON, or "" if absent; it is informative only.
 std::string textAt(const nlohmann::json& json, const char* pointer)
 {
@@ -409,7 +398,7 @@ VolumeSet readVolumes(const std::string& path, VolumeFileFacts& facts)
 		throw Error(ExitCode::invalid_input, path + ": found " + problem + ", expected a file of nook volumes");
 	}
 	const nook_volumes::Header& header = file.header();
-	const nlohmann::json json = jsonOf(bytes);
+	const nlohmann::json json = looseJson(std::string_view(bytes).substr(20, wordAt(bytes, 12)));
 	facts.level = textAt(json, "/asset/extras/nook_volumes/level");
 	facts.generator = textAt(json, "/asset/generator");
 	facts.layout = file.hasPrisms() ? VolumeLayout::prisms : VolumeLayout::polygons;

@@ -4,12 +4,15 @@
 // This work is based on: Morgan McGuire, Ambient Occlusion Volumes, 2010 (AOV).
 #pragma once
 
+#include "core/parallel.h"
 #include "core/progress.h"
 #include "scene/level.h"
 #include "volume/volumes.h"
 
+#include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -41,6 +44,15 @@ struct Occluders
 	std::span<const glm::dvec3> cornersOf(const Occluder& polygon) const
 	{
 		return std::span(corners).subspan(polygon.first_corner, polygon.corner_count);
+	}
+
+	// Appends a polygon with these corners.
+	void add(Occluder polygon, std::span<const glm::dvec3> of)
+	{
+		polygon.first_corner = static_cast<uint32_t>(corners.size());
+		polygon.corner_count = static_cast<uint32_t>(of.size());
+		corners.insert(corners.end(), of.begin(), of.end());
+		polygons.push_back(polygon);
 	}
 };
 
@@ -91,6 +103,12 @@ struct ClusterSettings
 // The order depends only on positions, areas and polygon numbers.
 void clusterVolumes(VolumeSet& volumes, const ClusterSettings& settings, const RunSettings& run);
 
+inline void include(Bounds& box, glm::dvec3 point)
+{
+	box.least = glm::min(box.least, point);
+	box.most = glm::max(box.most, point);
+}
+
 // Returns the bounding box of points.
 Bounds boundsAround(std::span<const glm::dvec3> points);
 
@@ -116,6 +134,40 @@ VolumeShape shapeOf(const VolumeSet& volumes, const Occluder& polygon);
 
 // Unit normal of a polygon's front by Newell's sum; zero without area.
 glm::dvec3 frontOf(std::span<const glm::dvec3> corners);
+
+// Normal of the front with a length of twice the area.
+glm::dvec3 areaVector(std::span<const glm::dvec3> corners);
+
+// Calls body(i) for every i below `count` in parallel, in blocks of `size` items; each block is progress of the stage, if that has
+// a name.
+template <class Body>
+void inBlocks(std::size_t count, std::size_t size, const RunSettings& run, const char* stage, const Body& body)
+{
+	const std::size_t blocks = (count + size - 1) / size;
+	const Progress told = stage != nullptr ? run.progress : Progress();
+	ProgressCounter progress(told, stage != nullptr ? stage : "", blocks);
+	parallelFor(blocks, run.threads,
+				[&](std::size_t block)
+				{
+					for (std::size_t i = block * size; i < std::min(count, (block + 1) * size); ++i)
+					{
+						body(i);
+					}
+					progress.finishOne();
+				});
+}
+
+// Calls visit(begin, end) for each run of consecutive items that are the same as its first.
+template <class List, class Same, class Visit> void forRuns(const List& items, const Same& same, const Visit& visit)
+{
+	for (std::size_t begin = 0, end = 0; begin < items.size(); begin = end)
+	{
+		for (end = begin + 1; end < items.size() && same(items[begin], items[end]); ++end)
+		{
+		}
+		visit(begin, end);
+	}
+}
 
 } // namespace nook
 

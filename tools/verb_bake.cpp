@@ -195,33 +195,6 @@ void addFile(Facts& facts, const BakeInput& input, const GltfBaked& baked)
 	}
 }
 
-// In the file, triangles that were turned for the bake show their other sides.
-void turnBack(const BakeInput& input, Level& level, VertexBake& bake)
-{
-	std::vector<uint8_t> seen(level.positions.size(), 0); // 1: by a triangle that was not turned
-	for (std::size_t t = 0; t < level.triangles.size(); ++t)
-	{
-		glm::uvec3& corner = level.triangles[t];
-		const bool is_turned = input.turned[bake.refined ? bake.split.origins[t] : t] != 0;
-		for (int k = 0; k < 3; ++k)
-		{
-			seen[corner[k]] |= is_turned ? 2U : 1U;
-		}
-		is_turned ? std::swap(corner.y, corner.z) : void();
-	}
-	for (std::size_t v = 0; v < seen.size() && !bake.back.empty(); ++v)
-	{
-		if (seen[v] == 2)
-		{
-			std::swap(bake.visibility[v], bake.back[v]);
-			if (!bake.bent_back.empty())
-			{
-				std::swap(bake.bent[v], bake.bent_back[v]);
-			}
-		}
-	}
-}
-
 Made makeVertices(const BakeOptions& options, const BakeInput& input, Facts& facts, const RunSettings& how)
 {
 	BakeSettings settings = options.settings;
@@ -246,7 +219,7 @@ Made makeVertices(const BakeOptions& options, const BakeInput& input, Facts& fac
 	std::optional<Level> turned;
 	if (!input.turned.empty())
 	{
-		turnBack(input, bake.refined ? *bake.refined : turned.emplace(receiving), bake);
+		turnBack(bake.refined ? *bake.refined : turned.emplace(receiving), bake, input.turned);
 	}
 	const Level& level = bake.refined ? *bake.refined : turned ? *turned : receiving;
 	Made made;
@@ -512,9 +485,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 		read.insert(read.end(), detailed->level.files.begin(), detailed->level.files.end());
 	}
 	addInputs(read, how);
-	const bool is_cell =
-		std::any_of(loaded.level.meshes.begin(), loaded.level.meshes.end(), [](const Mesh& mesh) { return mesh.around; });
-	const bool in_place = is_gltf && !is_cell;
+	const bool in_place = takesValues(options.level.level, loaded.level);
 	if (!in_place)
 	{
 		checkPictures(loaded.level);

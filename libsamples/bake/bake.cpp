@@ -5,6 +5,7 @@
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/work_units.h"
+#include "scene/load_parts.h"
 #include "scene/topology.h"
 
 #include <glm/geometric.hpp>
@@ -185,6 +186,43 @@ std::size_t alignSheets(Level& level, int threads)
 		}
 	}
 	return turned;
+}
+
+void turnBack(Level& level, VertexBake& bake, std::span<const uint8_t> turned)
+{
+	if (turned.empty())
+	{
+		return;
+	}
+	std::vector<uint8_t> seen(level.positions.size(), 0); // 1: by a triangle that was not turned
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
+	{
+		glm::uvec3& corner = level.triangles[t];
+		const bool is_turned = turned[bake.refined ? bake.split.origins[t] : t] != 0;
+		for (int k = 0; k < 3; ++k)
+		{
+			seen[corner[k]] |= is_turned ? 2U : 1U;
+		}
+		is_turned ? std::swap(corner.y, corner.z) : void();
+	}
+	for (std::size_t v = 0; v < seen.size() && !bake.back.empty(); ++v)
+	{
+		if (seen[v] == 2)
+		{
+			std::swap(bake.visibility[v], bake.back[v]);
+			if (!bake.bent_back.empty())
+			{
+				std::swap(bake.bent[v], bake.bent_back[v]);
+			}
+		}
+	}
+}
+
+bool takesValues(const std::string& path, const Level& level)
+{
+	const std::string ending = endingOf(path);
+	return (ending == ".gltf" || ending == ".glb") &&
+		   std::none_of(level.meshes.begin(), level.meshes.end(), [](const Mesh& mesh) { return mesh.around; });
 }
 
 bool isBuried(const Tracer& tracer, glm::dvec3 origin, glm::dvec3 normal)

@@ -110,6 +110,12 @@ BakeCheck checkBake(const Tracer& tracer, const Level& baked, const VertexBake& 
 // the same for any thread count.
 std::size_t alignSheets(Level& level, int threads);
 
+// Turns them back, with their values. `turned`: 1 for each triangle that was flipped before the bake; empty: none.
+void turnBack(Level& level, VertexBake& bake, std::span<const uint8_t> turned);
+
+// True for a glTF file whose level is not a cell of another: it can take values itself.
+bool takesValues(const std::string& path, const Level& level);
+
 // True if, of nine directions over the hemisphere about `normal` (unit), at least seven more meet the back of a surface first than
 // meet a front: under a box that stands on a floor, or in a wall that intersects another. `origin` is off its own surface. Masked
 // surfaces have no inside.

@@ -687,10 +687,13 @@ std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const Ru
 	assert(count >= 1);
 	constexpr int kUsual = 12; // views that the stages of a verb need
 	CameraMemo& memo = tracer.cameraMemo();
-	const std::lock_guard lock(memo.mutex);
+	std::unique_lock lock(memo.mutex);
 	if (memo.chosen < count)
 	{
-		memo.cameras = bestCameras(tracer, std::max(count, kUsual), run);
+		lock.unlock(); // a thread that waits for the loop below may take up work that chooses, too
+		std::vector<LevelCamera> cameras = bestCameras(tracer, std::max(count, kUsual), run);
+		lock.lock();
+		memo.cameras = std::move(cameras);
 		memo.chosen = std::max(count, kUsual);
 	}
 	if (memo.cameras.empty())

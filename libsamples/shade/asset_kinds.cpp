@@ -7,6 +7,7 @@
 #include "core/lists.h"
 #include "methods/method_table.h"
 #include "scene/gltf_edit.h"
+#include "scene/load_parts.h"
 #include "volume/assets.h"
 #include "volume/build.h"
 #include "volume/volume_glb.h"
@@ -50,10 +51,10 @@ public:
 		return *m_bytes;
 	}
 
-	std::string file(std::string_view version, const std::string& /*command*/, std::string& what) const override
+	std::string file(const AssetFile& of, std::string& what) const override
 	{
 		what = "volumes of " + m_level + ": " + std::to_string(m_set.occluders.polygons.size());
-		return volumeGlb(m_set, {}, m_level, "nook " + std::string(version), m_run).bytes;
+		return volumeGlb(m_set, {}, m_level, "nook " + std::string(of.version), m_run).bytes;
 	}
 
 private:
@@ -200,8 +201,11 @@ void emitVolumes(AssetEmission& made)
 class BakeAsset : public LevelAsset
 {
 public:
-	BakeAsset(Level level, BakedValues values, uint64_t bytes, const BakeSettings& settings, const RunSettings& run)
-		: m_level(std::move(level)), m_values(std::move(values)), m_bytes(bytes), m_settings(settings), m_tracer(m_level, run)
+	// `turned`: 1 for each triangle of the level that its file has the other way round; empty: none.
+	BakeAsset(Level level, std::vector<uint8_t> turned, VertexBake bake, uint64_t bytes, const BakeSettings& settings,
+			  const RunSettings& run)
+		: m_level(std::move(level)), m_turned(std::move(turned)), m_bake(std::move(bake)), m_bytes(bytes), m_settings(settings),
+		  m_tracer(baked(), run)
 	{
 	}
 
@@ -209,7 +213,10 @@ public:
 	AovShaded draw(const GBuffer& gbuffer, const AssetSettings& /*settings*/, bool /*gl*/, const RunSettings& run,
 				   const DrawSettings& /*drawing*/) const override
 	{
-		const BakedPicture picture = bakedPicture(m_tracer, m_values, gbuffer, run);
+		BakedValues values;
+		values.front = m_bake.visibility;
+		values.back = m_bake.back.empty() ? m_bake.visibility : m_bake.back;
+		const BakedPicture picture = bakedPicture(m_tracer, values, gbuffer, run);
 		AovShaded drawn;
 		drawn.shaded.renderer = "CPU";
 		PassTime none{"none"};
@@ -225,27 +232,49 @@ public:
 		return m_bytes;
 	}
 
-	std::string file(std::string_view version, const std::string& command, std::string& what) const override
+	std::string file(const AssetFile& of, std::string& what) const override
 	{
-		what = m_level.name + " with visibility at its vertices: " + std::to_string(m_level.positions.size());
+		what = m_level.name + " with visibility at its vertices: " + std::to_string(baked().positions.size());
 		GltfBake bake;
-		bake.visibility = m_values.front;
-		bake.back = m_values.back;
-		bake.record = {{"to", "visibility"},  {"radius_m", m_settings.radius_m},
-					   {"falloff", "linear"}, {"rays", m_settings.rays},
-					   {"version", version},  {"command", command}};
+		bake.record = {{"to", "visibility"},      {"radius_m", m_settings.radius_m}, {"falloff", "linear"},
+					   {"rays", m_settings.rays}, {"version", of.version},           {"command", of.command}};
 		std::vector<GltfPlace> places;
-		std::string bytes = levelGlb(m_level, "nook " + std::string(version), places);
-		const std::array<std::string, 1> output{"level.glb"};
-		return bakeInto(openGlb(std::move(bytes), m_level.name), places, bake, output).files.front();
+		GltfFile file;
+		VertexBake values = m_bake;
+		if (takesValues(of.level, m_level))
+		{
+			places = loadPlaces(of.level, of.load, m_level, {}, of.run);
+			file = openGltf(of.level);
+			file.settings = of.load;
+			if (m_bake.refined)
+			{
+				bake.split = {&m_bake.split, m_level.triangles, m_bake.refined->triangles, m_level.positions.size()};
+			}
+			Level turned = baked();
+			turnBack(turned, values, m_turned);
+		}
+		else
+		{
+			std::string bytes = levelGlb(baked(), "nook " + std::string(of.version), places);
+			file = openGlb(std::move(bytes), m_level.name);
+		}
+		bake.visibility = values.visibility;
+		bake.back = values.back;
+		return bakeInto(file, places, bake, std::array<std::string, 1>{"level.glb"}).files.front();
 	}
 
 private:
+	const Level& baked() const
+	{
+		return m_bake.refined ? *m_bake.refined : m_level;
+	}
+
 	Level m_level;
-	BakedValues m_values;
+	std::vector<uint8_t> m_turned;
+	VertexBake m_bake;
 	uint64_t m_bytes;
 	BakeSettings m_settings;
-	Tracer m_tracer; // of m_level
+	Tracer m_tracer; // of baked()
 };
 
 std::unique_ptr<LevelAsset> makeBake(const AssetSource& source, const AssetSettings& asset, const RunSettings& run)
@@ -255,24 +284,24 @@ std::unique_ptr<LevelAsset> makeBake(const AssetSource& source, const AssetSetti
 	settings.falloff = Falloff::linear;
 	settings.max_error = asset.bake_error;
 	settings.few = source.few;
-	Level aligned = source.level; // as nook bake does it
+	Level level = source.level; // as nook bake does it
+	std::vector<uint8_t> turned;
 	std::optional<Tracer> of_aligned;
-	if (alignSheets(aligned, run.threads) > 0)
+	if (alignSheets(level, run.threads) > 0)
 	{
-		of_aligned.emplace(aligned, run);
+		of_aligned.emplace(level, run);
+		turned = listOf(level.triangles.size(),
+						[&](std::size_t t) -> uint8_t { return level.triangles[t] == source.level.triangles[t] ? 0 : 1; });
 	}
 	VertexBake made = bakeVertices(of_aligned ? *of_aligned : source.tracer, settings, run);
 	of_aligned.reset();
-	Level level = made.refined ? std::move(*made.refined) : std::move(aligned);
 	// Four bytes per value; for vertices that were added 36 (position, normal, uv, value) and their indices.
+	const Level& baked = made.refined ? *made.refined : level;
 	const std::size_t values = made.visibility.size() + made.back.size();
-	const std::size_t more_vertices = level.positions.size() - source.level.positions.size();
-	const std::size_t more_triangles = level.triangles.size() - source.level.triangles.size();
-	BakedValues baked;
-	baked.back = made.back.empty() ? made.visibility : std::move(made.back);
-	baked.front = std::move(made.visibility);
-	return std::make_unique<BakeAsset>(std::move(level), std::move(baked), 4 * values + 32 * more_vertices + 12 * more_triangles,
-									   settings, run);
+	const std::size_t more_vertices = baked.positions.size() - level.positions.size();
+	const std::size_t more_triangles = baked.triangles.size() - level.triangles.size();
+	return std::make_unique<BakeAsset>(std::move(level), std::move(turned), std::move(made),
+									   4 * values + 32 * more_vertices + 12 * more_triangles, settings, run);
 }
 
 double bakeSeconds(const AssetSettings& settings, double triangles)
@@ -314,8 +343,7 @@ void emitBake(AssetEmission& made)
 	made.use.emplace_back(
 		"multiply ambient light by the vertices' _VISIBILITY; where a material has two sides and gl_FrontFacing is "
 		"false, by _VISIBILITY_BACK");
-	made.use.emplace_back(
-		"for a glTF level the command without --max-error adds the values to the level's own file, materials and all");
+	made.use.emplace_back("a glTF level is your own file with these values added; other levels are new files with their materials");
 	made.use.emplace_back("a bake is of static geometry: for what moves take a screen-space method as well, which darkens by "
 						  "screen / screen without what moves");
 }

@@ -5,6 +5,7 @@
 
 #include "emit/module.h"
 #include "methods/candidate_axes.h"
+#include "scene/load.h"
 #include "shade/aov.h"
 
 #include <functional>
@@ -50,6 +51,16 @@ struct AssetSource
 	double few = 0.0;      // BakeSettings::few
 };
 
+// What a file of an asset depends on besides it.
+struct AssetFile
+{
+	std::string_view version; // of nook
+	std::string command;      // that makes the file, for its record
+	const std::string& level; // file or builtin level
+	const LoadSettings& load; // how it was read
+	const RunSettings& run;
+};
+
 class LevelAsset
 {
 public:
@@ -62,8 +73,8 @@ public:
 	// Size of its file, or of what it adds to the level's.
 	virtual uint64_t bytes() = 0;
 
-	// Its file, and a short description of it. `version`: of nook; `command`: that makes the file, for its record.
-	virtual std::string file(std::string_view version, const std::string& command, std::string& what) const = 0;
+	// Its file, and a short description of it.
+	virtual std::string file(const AssetFile& of, std::string& what) const = 0;
 };
 
 struct EmittedFile

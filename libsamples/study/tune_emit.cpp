@@ -190,7 +190,9 @@ private:
 		std::string what;
 		const std::string load = loadOptions(m_settings.load);
 		const std::string file = nativePath(level.given).filename().string();
-		std::string bytes = asset.file(m_settings.version, kind.command(m_candidate, {file + load, level.radius_m}), what);
+		std::string bytes = asset.file(
+			{m_settings.version, kind.command(m_candidate, {file + load, level.radius_m}), level.given, m_settings.load, m_run},
+			what);
 		what += kind.with_level ? ", " + bytesText(asset.bytes()) + " more than the level" : "";
 		made.files.push_back({name, std::move(bytes), what});
 		made.commands.push_back(kind.command(m_candidate, {shellWord(level.given) + load, level.radius_m}) + " -o " + name);

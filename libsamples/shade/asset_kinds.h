@@ -51,7 +51,7 @@ struct AssetSource
 	double few = 0.0;      // BakeSettings::few
 };
 
-// What a file of an asset depends on besides it.
+// The command and the level that an asset's file names.
 struct AssetFile
 {
 	std::string_view version; // of nook

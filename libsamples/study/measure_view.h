@@ -104,7 +104,7 @@ struct Measurement
 	std::vector<float> visibility;  // rows from the top; sky 1
 };
 
-// What the views of a level share. Neither copied nor moved: they point to it.
+// Shared by the views of a level, which point to it: neither copied nor moved.
 class LevelBench
 {
 public:

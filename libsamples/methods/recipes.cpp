@@ -149,8 +149,8 @@ nlohmann::ordered_json recipeJson(const MethodRecipe& recipe)
 
 std::string recipesFile(const std::vector<MethodRecipe>& recipes, const std::string& version)
 {
-	return jsonFile(
-		nlohmann::ordered_json{{"format", kRecipesFormat}, {"nook_version", version}, {"recipes", mapped(recipes, recipeJson)}});
+	const auto list = mapped(recipes, [](const MethodRecipe& recipe) { return recipeJson(recipe); });
+	return jsonFile(nlohmann::ordered_json{{"format", kRecipesFormat}, {"nook_version", version}, {"recipes", list}});
 }
 
 bool holdsRecipes(const std::string& text, const std::string& path)

@@ -388,7 +388,7 @@ private:
 	std::array<double, 3> m_offset{};
 };
 
-float shareOf(const std::vector<std::string_view>& words, const TextPlace& place)
+float shareIn(const std::vector<std::string_view>& words, const TextPlace& place)
 {
 	const std::size_t at = words.size() > 1 && words[1] == "-halo" ? 2 : 1; // ignores how -halo depends on the view
 	if (at >= words.size())
@@ -450,7 +450,7 @@ void readMtl(const std::string& text, const std::string& path, MtlMaterials& mat
 		}
 		else if (keyword == "d" || keyword == "tr")
 		{
-			(keyword == "d" ? material->d : material->tr) = shareOf(words, place);
+			(keyword == "d" ? material->d : material->tr) = shareIn(words, place);
 		}
 		else if (keyword == "map_d")
 		{

@@ -360,7 +360,7 @@ seen = got['_VISIBILITY']
 assert seen[middle][0] < 0.8 < seen[0][0], seen
 rows = [line.split(',') for line in open('split.csv').read().split()[1:]]
 assert sum(row[0] == '0' for row in rows) == len(p) and sum(row[0] == '2' for row in rows) == 4
-# Without --max-error the output is what it is without the bake before.
+# Without --max-error, the bake before leaves no trace in the output.
 again, plain = glb('again.glb')[0], glb('plain.glb')[0]
 assert again['meshes'] == plain['meshes'] and again['accessors'] == plain['accessors']
 # Parts that receive nothing are not split, and darken.

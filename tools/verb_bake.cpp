@@ -45,7 +45,7 @@ struct Made
 struct BakeInput
 {
 	Tracer tracer;
-	std::vector<uint8_t> turned;    // 1 for each receiving triangle that the file has the other way round; empty: none
+	std::vector<uint8_t> turned;    // 1 for each receiving triangle that was flipped before the bake; empty: none
 	bool in_place = false;          // the level's own glTF file takes the values
 	std::vector<uint8_t> receivers; // 1 for each triangle that gets values; empty: all
 	std::optional<LevelPart> part;  // these triangles

@@ -131,7 +131,10 @@ void addMeans(Elements& elements, const std::string& name, const VertexPairs& ad
 			elements.add(!turns ? mean[i] : length > 1e-6 ? mean[i] / length : elements.number(a, i));
 		}
 	}
-	any_turns ? elements.dropBounds() : void();
+	if (any_turns)
+	{
+		elements.dropBounds();
+	}
 }
 
 // Joints and weights of a vertex between two: those with the largest mean weights, with the same sum.

@@ -201,7 +201,7 @@ void emitVolumes(AssetEmission& made)
 class BakeAsset : public LevelAsset
 {
 public:
-	// `turned`: 1 for each triangle of the level that its file has the other way round; empty: none.
+	// `turned`: 1 for each triangle that was flipped before the bake; empty: none.
 	BakeAsset(Level level, std::vector<uint8_t> turned, VertexBake bake, uint64_t bytes, const BakeSettings& settings,
 			  const RunSettings& run)
 		: m_level(std::move(level)), m_turned(std::move(turned)), m_bake(std::move(bake)), m_bytes(bytes), m_settings(settings),

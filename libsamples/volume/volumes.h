@@ -144,8 +144,8 @@ template <class Body>
 void inBlocks(std::size_t count, std::size_t size, const RunSettings& run, const char* stage, const Body& body)
 {
 	const std::size_t blocks = (count + size - 1) / size;
-	const Progress told = stage != nullptr ? run.progress : Progress();
-	ProgressCounter progress(told, stage != nullptr ? stage : "", blocks);
+	const Progress reported = stage != nullptr ? run.progress : Progress();
+	ProgressCounter progress(reported, stage != nullptr ? stage : "", blocks);
 	parallelFor(blocks, run.threads,
 				[&](std::size_t block)
 				{

@@ -216,6 +216,30 @@ template <int n> WideVec<n> operator*(const WideVec<n>& a, float s)
 {
 	return a * Wide(s);
 }
+template <int n> WideVec<n> operator*(float s, const WideVec<n>& a)
+{
+	return Wide(s) * a;
+}
+template <int n> WideVec<n> operator/(float s, const WideVec<n>& a)
+{
+	return Wide(s) / a;
+}
+template <int n> WideVec<n> operator+(float s, const WideVec<n>& a)
+{
+	return Wide(s) + a;
+}
+template <int n> WideVec<n> operator+(const WideVec<n>& a, float s)
+{
+	return a + Wide(s);
+}
+template <int n> WideVec<n> operator-(float s, const WideVec<n>& a)
+{
+	return Wide(s) - a;
+}
+template <int n> WideVec<n> sqrt(const WideVec<n>& a)
+{
+	return mapped(a, a, [](const Wide& p, const Wide&) { return sqrt(p); });
+}
 template <int n> WideVec<n> abs(const WideVec<n>& a)
 {
 	return mapped(a, a, [](const Wide& p, const Wide&) { return abs(p); });

@@ -486,6 +486,15 @@ float nookLift(float height, float two_sided, float bias, float facing)
 	return out_of - height;
 }
 
+// Does a polygon whose volume extends `reach` metres (delta in AOV) reach a receiver at `height`: in front of it, or with
+// two_sided on both sides. A receiver within `bias` of the plane is not reached, so that no surface occludes itself, whatever
+// its normals are.
+bool nookReaches(float height, float two_sided, float reach, float bias)
+{
+	float up = two_sided > 0.5f ? abs(height) : height;
+	return up > bias && up < reach;
+}
+
 // Cross product whose direction is accurate even where it nearly cancels. Where the language has fma(), which rounds once, products
 // and their rounding are subtracted (W. Kahan's difference of products); otherwise factors are split.
 vec3 nookCross(vec3 a, vec3 b)
@@ -509,45 +518,45 @@ float nookUnit(vec3 a)
 	return 1.0f / sqrt(max(dot(a, a), 1e-30f));
 }
 
-// Angle from a to b, unit vectors in a plane with the normal `axis`, in (-pi/2, pi]; below 0 where rounding has swapped two points
-// that should be in that order. Beyond a right angle the sign is not due to rounding, except for a receiver close to the polygon,
-// where it could only be guessed.
-float nookTurn(vec3 a, vec3 b, vec3 axis)
+// Angle of a unit vector in a plane from the x axis, in (-pi/2, pi]; below 0 where rounding has swapped two points that should be in
+// that order. Beyond a right angle the sign is not due to rounding, except for a receiver close to the polygon, where it could
+// only be guessed.
+float nookTurn(vec2 a)
 {
-	float sine = dot(cross(a, b), axis);
-	float cosine = dot(a, b);
-	float arc = nookArc(abs(cosine));
-	return cosine < 0.0f ? 3.14159265f - arc * abs(sine) : arc * sine;
+	float arc = nookArc(abs(a.x));
+	return a.x < 0.0f ? 3.14159265f - arc * abs(a.y) : arc * a.y;
 }
 
 // AOV eq. 4 for the part of the polygon above the tangent plane of a receiver with the unit normal n, in [0, 1]. side: 1 where
 // the receiver sees the corners counter-clockwise, -1 where clockwise.
-// It walks around the edges once. The tangent plane cuts the polygon at pairs of an exit and an entry, and the edge along the
-// cut is added for each pair. A convex polygon has one pair; rounding may add more close to the tangent plane, and each gets
-// its edge.
+// It walks around the edges once, in a frame whose z axis is n (T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT
+// 2017). The tangent plane cuts the polygon at pairs of an exit and an entry, and the edge along the cut has the angle between
+// them. A convex polygon has one pair; rounding may add more close to the tangent plane. As complex numbers, the exits times the
+// conjugates of the entries have the sum of all these angles.
 // The direction in which an edge crosses the tangent plane is interpolated between those of its ends. Where they are nearly
 // opposite it lies on the line that the tangent plane and the plane of the edge share, unless both planes nearly are one: then
 // any direction between the ends will do.
 float nookFormFactor(int count, vec3 n, float side)
 {
+	float upward = n.z < 0.0f ? -1.0f : 1.0f;
+	float q = -1.0f / (upward + n.z);
+	float mixed = n.x * n.y * q;
+	vec3 right = vec3(1.0f + upward * n.x * n.x * q, upward * mixed, -upward * n.x);
+	vec3 up = vec3(mixed, upward + n.y * n.y * q, -n.y);
 	vec3 a = nookCorner(count - 1);
-	vec3 from = a * nookUnit(a); // the direction of a, and its sine of elevation
-	float ha = dot(from, n);
+	vec3 away = a * nookUnit(a);
+	vec3 from = vec3(dot(away, right), dot(away, up), dot(away, n));
 	float edges = 0.0f;
-	float cuts = 0.0f;
-	vec3 exit = vec3(0.0f, 0.0f, 0.0f);  // the last exit
-	vec3 entry = vec3(0.0f, 0.0f, 0.0f); // the first entry, where no exit came before it
-	int exits = 0;
-	int entries = 0;
+	vec2 cut = vec2(1.0f, 0.0f);
 	for (int i = 0; i < count; ++i)
 	{
 		vec3 b = nookCorner(i);
-		vec3 to = b * nookUnit(b);
-		float hb = dot(to, n);
-		if (ha > 0.0f || hb > 0.0f)
+		away = b * nookUnit(b);
+		vec3 to = vec3(dot(away, right), dot(away, up), dot(away, n));
+		if (from.z > 0.0f || to.z > 0.0f)
 		{
-			vec3 first = from;
-			vec3 last = to;
+			vec2 first = vec2(from.x, from.y);
+			vec2 last = vec2(to.x, to.y);
 			float cosine = dot(from, to);
 			bool opposite = cosine < -0.95f;
 			vec3 exact = vec3(0.0f, 0.0f, 0.0f);
@@ -555,66 +564,37 @@ float nookFormFactor(int count, vec3 n, float side)
 			{
 				exact = nookCross(b, a);
 			}
-			if (ha <= 0.0f || hb <= 0.0f)
+			if (from.z <= 0.0f || to.z <= 0.0f)
 			{
-				vec3 node = from * abs(hb) + to * abs(ha);
+				bool exits = to.z <= 0.0f;
+				vec2 node = first * abs(to.z) + last * abs(from.z);
 				if (opposite)
 				{
-					vec3 line = cross(n, exact);
-					if (dot(line, line) > 1e-4f * dot(exact, exact))
-					{
-						node = dot(line, node) < 0.0f ? -line : line;
-					}
+					vec2 line = vec2(-dot(exact, up), dot(exact, right));
+					line = exits ? line : -line;
+					node = dot(line, line) > 1e-4f * dot(exact, exact) ? line : node;
 				}
-				node = node * nookUnit(node);
-				if (hb <= 0.0f)
-				{
-					exit = node;
-					exits = 1;
-					last = node;
-				}
-				else
-				{
-					if (exits > 0)
-					{
-						cuts += nookTurn(node, exit, n * side);
-					}
-					else
-					{
-						entry = node;
-						entries = 1;
-					}
-					first = node;
-				}
+				node = node * (1.0f / sqrt(max(dot(node, node), 1e-30f)));
+				first = exits ? first : node;
+				last = exits ? node : last;
 				cosine = dot(first, last);
+				float turn = exits ? node.y : -node.y;
+				cut = vec2(cut.x * node.x - cut.y * turn, cut.x * turn + cut.y * node.x);
 			}
-			vec3 c = cross(last, first);
-			float term = dot(n, c) * nookArc(abs(cosine));
+			float sine = last.x * first.y - last.y * first.x;
+			float term = sine * nookArc(abs(cosine));
 			if (cosine < 0.0f)
 			{
-				c = opposite ? exact : c;
-				term = 3.14159265f * dot(n, c) * nookUnit(c) - term;
+				float unit = opposite ? dot(n, exact) * nookUnit(exact) : sine / sqrt(1.0f - cosine * cosine);
+				term = 3.14159265f * unit - term;
 			}
 			edges += term;
 		}
 		a = b;
-		ha = hb;
 		from = to;
 	}
-	if (entries > 0 && exits > 0)
-	{
-		cuts += nookTurn(entry, exit, n * side);
-	}
+	float cuts = nookTurn(vec2(cut.x, side * cut.y));
 	return clamp((side * edges + cuts) * 0.159154943f, 0.0f, 1.0f);
-}
-
-// Does a polygon whose volume extends `reach` metres (delta in AOV) reach a receiver at `height`: in front of it, or with
-// two_sided on both sides. A receiver within `bias` of the plane is not reached, so that no surface occludes itself, whatever
-// its normals are.
-bool nookReaches(float height, float two_sided, float reach, float bias)
-{
-	float up = two_sided > 0.5f ? abs(height) : height;
-	return up > bias && up < reach;
 }
 
 // The falloff without alpha (AOV eqs. 5 and 8), in [0, 1]; 0 outside the volume. height: distance from the plane. share: the
@@ -636,11 +616,10 @@ float nookFalloff(int count, vec3 front, float height, float reach, float share)
 	return g;
 }
 
-// The occlusion by the polygon, falloff times form factor, at a receiver with the unit normal n; in [0, alpha]. share: extent
-// of the volume along the normal (x) and beyond the edges (y), as shares of reach.
-float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, float reach, vec2 share, float bias)
+// The occlusion by the polygon, falloff times form factor, at a receiver with the unit normal n; in [0, alpha]. height:
+// nookHeight(front). share: extent of the volume along the normal (x) and beyond the edges (y), as shares of reach.
+float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, float height, float reach, vec2 share, float bias)
 {
-	float height = nookHeight(front);
 	if (!nookReaches(height, two_sided, reach * share.x, bias))
 	{
 		return 0.0f;
@@ -661,32 +640,45 @@ vec3 nookTurned(vec3 v)
 	return nook.right.xyz * v.x + nook.up.xyz * v.y + nook.back.xyz * v.z;
 }
 
-// Sets up the surface that a pixel shows as the receiver, with the rounding of its position; returns its normal, or 0 where
-// there is no surface.
-vec3 nookReceive(ivec2 pixel)
+// Sets up the surface that a pixel shows as the receiver, with the rounding of its position; returns its height above the polygon.
+float nookReceive(ivec2 pixel, float depth)
+{
+	nook_base = nook_offset - nookTurned(nookPosition(pixel, depth));
+	nook_bias = max(nook.plane_bias, nookDepthError(depth) + nook.position_error);
+	return nookHeight(nook_front.xyz);
+}
+
+// Does the volume reach the receiver, or may it once nookLifted has moved it?
+bool nookMayReach(float height)
+{
+	return nookReaches(height, float(nook_polygon.z), nook.radius * nookShare().x, -nook_bias);
+}
+
+// Moves the receiver by nookLift; returns its new height.
+float nookLifted(float height, vec3 normal)
+{
+	float lift = nookLift(height, float(nook_polygon.z), nook_bias, dot(normal, nook_front.xyz));
+	nook_base -= lift * nook_front.xyz;
+	return height + lift;
+}
+
+// AOV eqs. 4 and 5. The normal is fetched only where the volume reaches.
+float nookOcclusion(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
 	if (depth >= NOOK_SKY)
 	{
-		return vec3(0.0, 0.0, 0.0);
+		return 0.0;
 	}
-	nook_base = nook_offset - nookTurned(nookPosition(pixel, depth));
-	nook_bias = max(nook.plane_bias, nookDepthError(depth) + nook.position_error);
-	vec3 normal = nookTurned(nookNormal(pixel));
-	nook_base -= nookLift(nookHeight(nook_front.xyz), float(nook_polygon.z), nook_bias, dot(normal, nook_front.xyz)) * nook_front.xyz;
-	return normal;
-}
-
-// AOV eqs. 4 and 5.
-float nookOcclusion(ivec2 pixel)
-{
-	vec3 normal = nookReceive(pixel);
-	if (dot(normal, normal) < 0.25)
+	float height = nookReceive(pixel, depth);
+	if (!nookMayReach(height))
 	{
 		return 0.0;
 	}
-	return nookVolume(nook_polygon.y, normal, nook_front.xyz, nook_front.w, float(nook_polygon.z), nook.radius,
-		nookShare(), nook_bias);
+	vec3 normal = nookTurned(nookNormal(pixel));
+	height = nookLifted(height, normal);
+	return nookVolume(nook_polygon.y, normal, nook_front.xyz, nook_front.w, float(nook_polygon.z), height, nook.radius, nookShare(),
+		nook_bias);
 }
 
 layout(location = 0) out float nook_occlusion;

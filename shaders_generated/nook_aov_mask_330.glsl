@@ -826,32 +826,51 @@ vec3 nookTurned(vec3 v)
 	return nook.right.xyz * v.x + nook.up.xyz * v.y + nook.back.xyz * v.z;
 }
 
-// Sets up the surface that a pixel shows as the receiver, with the rounding of its position; returns its normal, or 0 where
-// there is no surface.
-vec3 nookReceive(ivec2 pixel)
+// Sets up the surface that a pixel shows as the receiver, with the rounding of its position; returns its height above the polygon.
+float nookReceive(ivec2 pixel, float depth)
+{
+	nook_base = nook_offset - nookTurned(nookPosition(pixel, depth));
+	nook_bias = max(nook.plane_bias, nookDepthError(depth) + nook.position_error);
+	return nookHeight(nook_front.xyz);
+}
+
+// Does the volume reach the receiver, or may it once nookLifted has moved it?
+bool nookMayReach(float height)
+{
+	return nookReaches(height, float(nook_polygon.z), nook.radius * nookShare().x, -nook_bias);
+}
+
+// Moves the receiver by nookLift; returns its new height.
+float nookLifted(float height, vec3 normal)
+{
+	float lift = nookLift(height, float(nook_polygon.z), nook_bias, dot(normal, nook_front.xyz));
+	nook_base -= lift * nook_front.xyz;
+	return height + lift;
+}
+
+vec3 nook_normal;
+
+// Fragment stage with masks: from a pixel that a volume covers to the directions that the polygon covers there, as bits.
+
+// Height of the surface that a pixel shows above the polygon where it is within the volume, else 0. Sets nook_normal.
+float nookMaskHeight(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
 	if (depth >= NOOK_SKY)
 	{
-		return vec3(0.0, 0.0, 0.0);
+		return 0.0;
 	}
-	nook_base = nook_offset - nookTurned(nookPosition(pixel, depth));
-	nook_bias = max(nook.plane_bias, nookDepthError(depth) + nook.position_error);
-	vec3 normal = nookTurned(nookNormal(pixel));
-	nook_base -= nookLift(nookHeight(nook_front.xyz), float(nook_polygon.z), nook_bias, dot(normal, nook_front.xyz)) * nook_front.xyz;
-	return normal;
-}
-
-// Fragment stage with masks: from a pixel that a volume covers to the directions that the polygon covers there, as bits.
-
-// Height of the receiver above the polygon where it is within the volume, else 0.
-float nookMaskHeight(vec3 normal)
-{
-	if (dot(normal, normal) < 0.25)
+	float height = nookReceive(pixel, depth);
+	if (!nookMayReach(height))
 	{
 		return 0.0;
 	}
-	float height = nookHeight(nook_front.xyz);
+	nook_normal = nookTurned(nookNormal(pixel));
+	if (dot(nook_normal, nook_normal) < 0.25)
+	{
+		return 0.0;
+	}
+	height = nookLifted(height, nook_normal);
 	bool within = nookReaches(height, float(nook_polygon.z), nook.radius * nookShare().x, nook_bias) &&
 		nookFalloff(nook_polygon.y, nook_front.xyz, abs(height), nook.radius, nookShare().y) > 0.0;
 	return within ? height : 0.0;
@@ -864,14 +883,12 @@ uvec4 nookCovered(int four, vec3 normal, float height)
 		uvec4(0xffffffffu, 0xffffffffu, 0xffffffffu, 0xffffffffu));
 }
 
-vec3 nook_normal;
 float nook_height;
 
 // Directions 0 to 127; nookMoreBits: the others.
 uvec4 nookBits(ivec2 pixel)
 {
-	nook_normal = nookReceive(pixel);
-	nook_height = nookMaskHeight(nook_normal);
+	nook_height = nookMaskHeight(pixel);
 	return nook_height != 0.0 ? nookCovered(0, nook_normal, nook_height) : uvec4(0u, 0u, 0u, 0u);
 }
 uvec4 nookMoreBits()

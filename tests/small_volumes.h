@@ -69,7 +69,7 @@ inline double sumAt(const VolumeSet& set, glm::dvec3 position, glm::dvec3 normal
 			corner -= lift * front;
 		}
 		sum += static_cast<double>(kernels.nookVolume(static_cast<int>(all.size()), glm::vec3(normal), front, polygon.alpha,
-													  polygon.two_sided ? 1.0F : 0.0F, delta,
+													  polygon.two_sided ? 1.0F : 0.0F, kernels.nookHeight(front), delta,
 													  glm::vec2(polygon.reach, polygon.side_reach), 1e-4F * delta));
 	}
 	return sum;

@@ -410,14 +410,12 @@ uvec4 nookHalfSpacesAt(ivec2 texel)
 )";
 
 constexpr const char* kMaskMain = R"(
-NOOK_STATICvec3 nook_normal;
 NOOK_STATICfloat nook_height;
 
 // Directions 0 to 127; nookMoreBits: the others.
 uvec4 nookBits(ivec2 pixel)
 {
-	nook_normal = nookReceive(pixel);
-	nook_height = nookMaskHeight(nook_normal);
+	nook_height = nookMaskHeight(pixel);
 	return nook_height != 0.0 ? nookCovered(0, nook_normal, nook_height) : uvec4(0u, 0u, 0u, 0u);
 }
 uvec4 nookMoreBits()
@@ -466,7 +464,7 @@ std::string fragmentStage(const AovTextSettings& settings, const std::string& bu
 	FunctionWriter functions(volumeKernels());
 	std::string text = buffers + betweenText(settings.target, "in") + inputs(settings) + kReceiver;
 	text += functionOf(functions, "nookPosition") + functionOf(functions, "nookDepthError") + functionOf(functions, "nookHeight") +
-			functionOf(functions, "nookLift");
+			functionOf(functions, "nookLift") + functionOf(functions, "nookReaches");
 	if (settings.directions == 0)
 	{
 		return text + functionOf(functions, "nookVolume", settings.target) + stageText(assets::aov_fragment_glsl) +
@@ -474,12 +472,12 @@ std::string fragmentStage(const AovTextSettings& settings, const std::string& bu
 	}
 	std::vector<std::string> values{"nookBits(PIXEL * nook.cell)", "nookMoreBits()"};
 	values.resize(settings.directions > 128 ? 2 : 1);
-	text += functionOf(functions, "nookReaches") + functionOf(functions, "nookFalloff");
+	text += functionOf(functions, "nookFalloff");
 	functionOf(functions, "nookHalfSpaceTexel"); // in masksText
 	text += kHalfSpaces + functionOf(functions, "nookMaskBits", settings.target);
 	std::string receiver = stageText(assets::aov_fragment_glsl);
 	receiver.resize(receiver.find("\n// AOV eqs. 4 and 5."));
-	return text + receiver + stageText(assets::aov_mask_fragment_glsl) + kMaskMain +
+	return text + receiver + "\nNOOK_STATICvec3 nook_normal;\n" + stageText(assets::aov_mask_fragment_glsl) + kMaskMain +
 		   entryText(settings.target, "uvec4", "nook_bits", values, true);
 }
 

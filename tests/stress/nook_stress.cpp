@@ -150,10 +150,12 @@ void runWildVolume(Case& one)
 	kernels.corners = corners;
 	const auto count = static_cast<int>(corners.size());
 	const float bias = static_cast<float>(kVolumeBias) * reach;
-	one.result("volume", static_cast<double>(kernels.nookVolume(count, normal, front, alpha, two_sided, reach, share, bias)), 0.0,
+	const float height = kernels.nookHeight(front);
+	one.result("volume",
+			   static_cast<double>(kernels.nookVolume(count, normal, front, alpha, two_sided, height, reach, share, bias)), 0.0,
 			   static_cast<double>(alpha));
 	one.result("form factor", static_cast<double>(kernels.nookFormFactor(count, normal, -1.0F)), 0.0, 1.0);
-	const float lift = kernels.nookLift(kernels.nookHeight(front), two_sided, bias, glm::dot(normal, front));
+	const float lift = kernels.nookLift(height, two_sided, bias, glm::dot(normal, front));
 	one.result("lift", static_cast<double>(lift), -2.02 * static_cast<double>(bias), 2.02 * static_cast<double>(bias));
 }
 

@@ -7,30 +7,43 @@ vec3 nookTurned(vec3 v)
 	return nook.right.xyz * v.x + nook.up.xyz * v.y + nook.back.xyz * v.z;
 }
 
-// Sets up the surface that a pixel shows as the receiver, with the rounding of its position; returns its normal, or 0 where
-// there is no surface.
-vec3 nookReceive(ivec2 pixel)
+// Sets up the surface that a pixel shows as the receiver, with the rounding of its position; returns its height above the polygon.
+float nookReceive(ivec2 pixel, float depth)
+{
+	nook_base = nook_offset - nookTurned(nookPosition(pixel, depth));
+	nook_bias = max(nook.plane_bias, nookDepthError(depth) + nook.position_error);
+	return nookHeight(nook_front.xyz);
+}
+
+// Does the volume reach the receiver, or may it once nookLifted has moved it?
+bool nookMayReach(float height)
+{
+	return nookReaches(height, float(nook_polygon.z), nook.radius * nookShare().x, -nook_bias);
+}
+
+// Moves the receiver by nookLift; returns its new height.
+float nookLifted(float height, vec3 normal)
+{
+	float lift = nookLift(height, float(nook_polygon.z), nook_bias, dot(normal, nook_front.xyz));
+	nook_base -= lift * nook_front.xyz;
+	return height + lift;
+}
+
+// AOV eqs. 4 and 5. The normal is fetched only where the volume reaches.
+float nookOcclusion(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
 	if (depth >= NOOK_SKY)
 	{
-		return vec3(0.0, 0.0, 0.0);
+		return 0.0;
 	}
-	nook_base = nook_offset - nookTurned(nookPosition(pixel, depth));
-	nook_bias = max(nook.plane_bias, nookDepthError(depth) + nook.position_error);
-	vec3 normal = nookTurned(nookNormal(pixel));
-	nook_base -= nookLift(nookHeight(nook_front.xyz), float(nook_polygon.z), nook_bias, dot(normal, nook_front.xyz)) * nook_front.xyz;
-	return normal;
-}
-
-// AOV eqs. 4 and 5.
-float nookOcclusion(ivec2 pixel)
-{
-	vec3 normal = nookReceive(pixel);
-	if (dot(normal, normal) < 0.25)
+	float height = nookReceive(pixel, depth);
+	if (!nookMayReach(height))
 	{
 		return 0.0;
 	}
-	return nookVolume(nook_polygon.y, normal, nook_front.xyz, nook_front.w, float(nook_polygon.z), nook.radius,
-		nookShare(), nook_bias);
+	vec3 normal = nookTurned(nookNormal(pixel));
+	height = nookLifted(height, normal);
+	return nookVolume(nook_polygon.y, normal, nook_front.xyz, nook_front.w, float(nook_polygon.z), height, nook.radius, nookShare(),
+		nook_bias);
 }

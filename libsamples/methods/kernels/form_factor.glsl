@@ -64,45 +64,45 @@ float nookUnit(vec3 a)
 	return 1.0f / sqrt(max(dot(a, a), 1e-30f));
 }
 
-// Angle from a to b, unit vectors in a plane with the normal `axis`, in (-pi/2, pi]; below 0 where rounding has swapped two points
-// that should be in that order. Beyond a right angle the sign is not due to rounding, except for a receiver close to the polygon,
-// where it could only be guessed.
-float nookTurn(vec3 a, vec3 b, vec3 axis)
+// Angle of a unit vector in a plane from the x axis, in (-pi/2, pi]; below 0 where rounding has swapped two points that should be in
+// that order. Beyond a right angle the sign is not due to rounding, except for a receiver close to the polygon, where it could
+// only be guessed.
+float nookTurn(vec2 a)
 {
-	float sine = dot(cross(a, b), axis);
-	float cosine = dot(a, b);
-	float arc = nookArc(abs(cosine));
-	return cosine < 0.0f ? 3.14159265f - arc * abs(sine) : arc * sine;
+	float arc = nookArc(abs(a.x));
+	return a.x < 0.0f ? 3.14159265f - arc * abs(a.y) : arc * a.y;
 }
 
 // AOV eq. 4 for the part of the polygon above the tangent plane of a receiver with the unit normal n, in [0, 1]. side: 1 where
 // the receiver sees the corners counter-clockwise, -1 where clockwise.
-// It walks around the edges once. The tangent plane cuts the polygon at pairs of an exit and an entry, and the edge along the
-// cut is added for each pair. A convex polygon has one pair; rounding may add more close to the tangent plane, and each gets
-// its edge.
+// It walks around the edges once, in a frame whose z axis is n (T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT
+// 2017). The tangent plane cuts the polygon at pairs of an exit and an entry, and the edge along the cut has the angle between
+// them. A convex polygon has one pair; rounding may add more close to the tangent plane. As complex numbers, the exits times the
+// conjugates of the entries have the sum of all these angles.
 // The direction in which an edge crosses the tangent plane is interpolated between those of its ends. Where they are nearly
 // opposite it lies on the line that the tangent plane and the plane of the edge share, unless both planes nearly are one: then
 // any direction between the ends will do.
 float nookFormFactor(int count, vec3 n, float side)
 {
+	float upward = n.z < 0.0f ? -1.0f : 1.0f;
+	float q = -1.0f / (upward + n.z);
+	float mixed = n.x * n.y * q;
+	vec3 right = vec3(1.0f + upward * n.x * n.x * q, upward * mixed, -upward * n.x);
+	vec3 up = vec3(mixed, upward + n.y * n.y * q, -n.y);
 	vec3 a = nookCorner(count - 1);
-	vec3 from = a * nookUnit(a); // the direction of a, and its sine of elevation
-	float ha = dot(from, n);
+	vec3 away = a * nookUnit(a);
+	vec3 from = vec3(dot(away, right), dot(away, up), dot(away, n));
 	float edges = 0.0f;
-	float cuts = 0.0f;
-	vec3 exit = vec3(0.0f, 0.0f, 0.0f);  // the last exit
-	vec3 entry = vec3(0.0f, 0.0f, 0.0f); // the first entry, where no exit came before it
-	int exits = 0;
-	int entries = 0;
+	vec2 cut = vec2(1.0f, 0.0f);
 	for (int i = 0; i < count; ++i)
 	{
 		vec3 b = nookCorner(i);
-		vec3 to = b * nookUnit(b);
-		float hb = dot(to, n);
-		if (ha > 0.0f || hb > 0.0f)
+		away = b * nookUnit(b);
+		vec3 to = vec3(dot(away, right), dot(away, up), dot(away, n));
+		if (from.z > 0.0f || to.z > 0.0f)
 		{
-			vec3 first = from;
-			vec3 last = to;
+			vec2 first = vec2(from.x, from.y);
+			vec2 last = vec2(to.x, to.y);
 			float cosine = dot(from, to);
 			bool opposite = cosine < -0.95f;
 			vec3 exact = vec3(0.0f, 0.0f, 0.0f);
@@ -110,55 +110,35 @@ float nookFormFactor(int count, vec3 n, float side)
 			{
 				exact = nookCross(b, a);
 			}
-			if (ha <= 0.0f || hb <= 0.0f)
+			if (from.z <= 0.0f || to.z <= 0.0f)
 			{
-				vec3 node = from * abs(hb) + to * abs(ha);
+				bool exits = to.z <= 0.0f;
+				vec2 node = first * abs(to.z) + last * abs(from.z);
 				if (opposite)
 				{
-					vec3 line = cross(n, exact);
-					if (dot(line, line) > 1e-4f * dot(exact, exact))
-					{
-						node = dot(line, node) < 0.0f ? -line : line;
-					}
+					vec2 line = vec2(-dot(exact, up), dot(exact, right));
+					line = exits ? line : -line;
+					node = dot(line, line) > 1e-4f * dot(exact, exact) ? line : node;
 				}
-				node = node * nookUnit(node);
-				if (hb <= 0.0f)
-				{
-					exit = node;
-					exits = 1;
-					last = node;
-				}
-				else
-				{
-					if (exits > 0)
-					{
-						cuts += nookTurn(node, exit, n * side);
-					}
-					else
-					{
-						entry = node;
-						entries = 1;
-					}
-					first = node;
-				}
+				node = node * (1.0f / sqrt(max(dot(node, node), 1e-30f)));
+				first = exits ? first : node;
+				last = exits ? node : last;
 				cosine = dot(first, last);
+				float turn = exits ? node.y : -node.y;
+				cut = vec2(cut.x * node.x - cut.y * turn, cut.x * turn + cut.y * node.x);
 			}
-			vec3 c = cross(last, first);
-			float term = dot(n, c) * nookArc(abs(cosine));
+			float sine = last.x * first.y - last.y * first.x;
+			float term = sine * nookArc(abs(cosine));
 			if (cosine < 0.0f)
 			{
-				c = opposite ? exact : c;
-				term = 3.14159265f * dot(n, c) * nookUnit(c) - term;
+				float unit = opposite ? dot(n, exact) * nookUnit(exact) : sine / sqrt(1.0f - cosine * cosine);
+				term = 3.14159265f * unit - term;
 			}
 			edges += term;
 		}
 		a = b;
-		ha = hb;
 		from = to;
 	}
-	if (entries > 0 && exits > 0)
-	{
-		cuts += nookTurn(entry, exit, n * side);
-	}
+	float cuts = nookTurn(vec2(cut.x, side * cut.y));
 	return clamp((side * edges + cuts) * 0.159154943f, 0.0f, 1.0f);
 }

@@ -53,11 +53,10 @@ float nookFalloff(int count, vec3 front, float height, float reach, float share)
 	return g;
 }
 
-// The occlusion by the polygon, falloff times form factor, at a receiver with the unit normal n; in [0, alpha]. share: extent
-// of the volume along the normal (x) and beyond the edges (y), as shares of reach.
-float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, float reach, vec2 share, float bias)
+// The occlusion by the polygon, falloff times form factor, at a receiver with the unit normal n; in [0, alpha]. height:
+// nookHeight(front). share: extent of the volume along the normal (x) and beyond the edges (y), as shares of reach.
+float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, float height, float reach, vec2 share, float bias)
 {
-	float height = nookHeight(front);
 	if (!nookReaches(height, two_sided, reach * share.x, bias))
 	{
 		return 0.0f;

@@ -49,6 +49,38 @@ struct Unwrapped
 inline constexpr uint32_t kNoPage = UINT32_MAX;
 inline constexpr uint32_t kNoIndex = UINT32_MAX;
 
+// A chart in metres, between (0, 0) and `size`.
+struct FlatChart
+{
+	glm::dvec2 size{0.0};
+	std::vector<glm::dvec2> points;
+	std::vector<glm::uvec3> triangles;
+};
+
+// One of the charts, larger by a factor.
+struct ScaledChart
+{
+	std::size_t chart = 0;
+	double scale = 1.0;
+};
+
+// Charts of a level's pieces at all their places, before they have a place in a texture.
+struct ChartedLevel
+{
+	std::vector<FlatChart> flat;
+	std::vector<ScaledChart> scaled;   // each as large as its triangles at that place
+	std::vector<uint32_t> of_triangle; // per triangle of the pieces in order: index into `scaled`; kNoIndex without an area
+	std::vector<uint32_t> number;      // and its number in that chart
+	std::vector<double> areas_m2;      // per entry of `scaled`
+	std::vector<double> stretches;     // sums of squares by area, likewise
+};
+ChartedLevel chartLevel(const Level& level, std::span<const UnwrapPiece> pieces, const RunSettings& run);
+
+// Packs them. `densities`: factor of the texels per metre of each entry of `scaled`, 0 for those without a place, whose triangles
+// have kNoPage and share vertices as in the level; empty: 1 for all.
+Unwrapped packLevel(const Level& level, std::span<const UnwrapPiece> pieces, const ChartedLevel& charted,
+					std::span<const double> densities, const UnwrapSettings& settings, const RunSettings& run);
+
 // Triangles of a chart have the same orientation in the texture and do not overlap. Throws Error (invalid_input) if the pages are
 // too small. Same result for any thread count. Progress stages "charts" and "pages".
 Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const UnwrapSettings& settings, const RunSettings& run);
@@ -59,14 +91,6 @@ std::vector<UnwrapPiece> piecesOf(std::span<const GltfPlace> places);
 std::vector<GltfCharts> chartsOf(std::span<const GltfPlace> places, const Unwrapped& unwrapped);
 
 // Shared by its parts.
-
-// A chart in metres, between (0, 0) and `size`.
-struct FlatChart
-{
-	glm::dvec2 size{0.0};
-	std::vector<glm::dvec2> points;
-	std::vector<glm::uvec3> triangles;
-};
 
 struct Chart
 {
@@ -103,13 +127,6 @@ struct ChartPlace
 	{
 		return corner + scale * (turned ? glm::dvec2(-point.y, point.x) : point);
 	}
-};
-
-// One of the charts, larger by a factor.
-struct ScaledChart
-{
-	std::size_t chart = 0;
-	double scale = 1.0;
 };
 
 // Places for charts at so many texels per metre, without common texels within the margin; none if they do not fit.

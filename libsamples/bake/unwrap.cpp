@@ -183,15 +183,19 @@ Unwrapped packLevel(const Level& level, std::span<const UnwrapPiece> pieces, con
 			stretch += charted.stretches[i] * density * density;
 		}
 	}
-	const std::vector<ChartPlace> places = place(charted.flat, packed, settings, run.threads, made, level.name);
+	std::vector<ChartPlace> places;
+	if (!packed.empty())
+	{
+		places = place(charted.flat, packed, settings, run.threads, made, level.name);
+		made.stretch = std::sqrt(stretch / area);
+	}
 	made.charts = packed.size();
-	made.stretch = std::sqrt(stretch / area);
 	for (const ChartPlace& one : places)
 	{
 		made.pages = std::max<std::size_t>(made.pages, one.page + std::size_t{1});
 	}
 	const double across = made.texel_m * made.size_px;
-	made.coverage = area / (static_cast<double>(made.pages) * across * across);
+	made.coverage = packed.empty() ? 0.0 : area / (static_cast<double>(made.pages) * across * across);
 	made.level.name = level.name;
 	made.level.material_list = level.material_list;
 	std::unordered_map<uint64_t, uint32_t> known; // vertices by their chart's vertex and the level's
@@ -255,6 +259,71 @@ std::vector<UnwrapPiece> piecesOf(std::span<const GltfPlace> places)
 		pieces.push_back({place.triangles, is_new ? SIZE_MAX : at->second});
 	}
 	return pieces;
+}
+
+std::vector<TextureBake> bakePages(const Tracer& tracer, const Unwrapped& unwrapped, BakeSettings settings, const RunSettings& run)
+{
+	const auto partWith = [&](const auto& isWanted)
+	{
+		return partOf(unwrapped.level, mapped(unwrapped.page_of, [&](uint32_t page) { return uint8_t{isWanted(page)}; }),
+					  run.threads);
+	};
+	std::vector<TextureBake> pages;
+	for (std::size_t page = 0; page < unwrapped.pages; ++page)
+	{
+		const LevelPart part = partWith([page](uint32_t of) { return of == page; });
+		settings.receivers = &part.level;
+		pages.push_back(bakeTexture(tracer, part.level.uvs, unwrapped.size_px, settings, run));
+	}
+	const LevelPart textured = partWith([](uint32_t of) { return of != kNoPage; });
+	std::vector<uint32_t> page_of = unwrapped.page_of;
+	std::erase(page_of, kNoPage);
+	finishTextures(textured.level, textured.level.uvs, page_of, pages, run.threads);
+	return pages;
+}
+
+std::vector<GltfCharts> chartsAndRest(std::span<const GltfPlace> places, const Unwrapped& unwrapped)
+{
+	std::vector<GltfCharts> charts;
+	std::vector<uint32_t> number(unwrapped.level.positions.size(), kNoIndex);
+	std::size_t triangle = 0;
+	for (const GltfPlace& place : places)
+	{
+		GltfCharts& made = charts.emplace_back();
+		made.pages.resize(unwrapped.pages);
+		made.page_vertices.resize(unwrapped.pages);
+		for (const glm::uvec3 file : place.corners)
+		{
+			const glm::uvec3 corner = unwrapped.level.triangles[triangle];
+			const uint32_t page = unwrapped.page_of[triangle];
+			triangle += 1;
+			for (int k = 0; k < 3; ++k)
+			{
+				const uint32_t v = corner[place.mirrored ? (3 - k) % 3 : k];
+				const bool is_new = number[v] == kNoIndex;
+				if (page == kNoPage)
+				{
+					made.rest.push_back(file[k]);
+					number[v] = file[k];
+				}
+				else
+				{
+					number[v] = is_new ? static_cast<uint32_t>(made.copied.size()) : number[v];
+					made.pages[page].push_back(number[v]);
+				}
+				if (is_new)
+				{
+					(page == kNoPage ? made.rest_vertices : made.page_vertices[page]).emplace_back(number[v], v);
+				}
+				if (is_new && page != kNoPage)
+				{
+					made.copied.emplace_back(file[k], file[k]);
+					made.uvs.push_back(unwrapped.level.uvs[v]);
+				}
+			}
+		}
+	}
+	return charts;
 }
 
 std::vector<GltfCharts> chartsOf(std::span<const GltfPlace> places, const Unwrapped& unwrapped)

@@ -2,6 +2,7 @@
 // Gives every triangle a place of its own in a texture: charts, their coordinates, and where they lie on the texture's pages.
 #pragma once
 
+#include "bake/texture.h"
 #include "core/progress.h"
 #include "scene/gltf_edit.h"
 #include "scene/level.h"
@@ -85,10 +86,16 @@ Unwrapped packLevel(const Level& level, std::span<const UnwrapPiece> pieces, con
 // too small. Same result for any thread count. Progress stages "charts" and "pages".
 Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const UnwrapSettings& settings, const RunSettings& run);
 
+// Textures of the pages, finished. Progress stage "texels".
+std::vector<TextureBake> bakePages(const Tracer& tracer, const Unwrapped& unwrapped, BakeSettings settings, const RunSettings& run);
+
 // A glTF file's primitives at their places as pieces, and what they become. Not for instances, which share
 // their coordinates.
 std::vector<UnwrapPiece> piecesOf(std::span<const GltfPlace> places);
 std::vector<GltfCharts> chartsOf(std::span<const GltfPlace> places, const Unwrapped& unwrapped);
+
+// Likewise for a bake that has values at the vertices of triangles without a page.
+std::vector<GltfCharts> chartsAndRest(std::span<const GltfPlace> places, const Unwrapped& unwrapped);
 
 // Shared by its parts.
 

@@ -23,8 +23,8 @@ constexpr std::array<std::string_view, 2> kBakeSides{"separate", "mean"};       
 constexpr std::array<std::string_view, 2> kBakeNormals{"geometric", "interpolated"};         // of NormalKind
 constexpr std::array<std::string_view, 3> kBakeInstances{"separate", "shared", "attribute"}; // of BakeInstances
 constexpr std::array<std::string_view, 6> kBakeTargets{"visibility", "color", "color-alpha", "texcoord", "custom", "texture"};
-constexpr int kMostSet = 7;            // of texture coordinates
-constexpr int kStandardTexture = 1024; // texels across
+constexpr int kMostSet = 7;             // of texture coordinates
+constexpr int kStandardTexture = 1024;  // texels across
 constexpr double kStandardError = 0.03; // of --auto
 
 // Letters, digits and _.
@@ -97,7 +97,8 @@ void declareBake(CLI::App& app, BakeOptions& options)
 		 {"--normals", takesChoice(kBakeNormals, settings.normals),
 		  "Rays lie around the triangles' own normals (default) or around those of the vertices, interpolated",
 		  excludes("--probes", "none, since probes have all normals")},
-		 {"--max-error", takesNumber(settings.max_error, 1e-3, 1.0),
+		 {"--max-error",
+		  takesNumber(settings.max_error, 1e-3, 1.0),
 		  "Splits triangles whose root mean square error is above that, and neighbours, so that no crack opens; with --auto: the "
 		  "root mean square error of the surface (default 0.03)",
 		  {.excludes = {{"--fit points", "--fit surface, whose error it is"}, {"--texture or --probes", "one of them"}}}},

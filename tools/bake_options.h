@@ -26,9 +26,9 @@ struct BakeOptions
 	bool automatic = false;
 	std::size_t max_bytes = 0; // with that; 0: by the error
 	bool unwrap = false;       // texture coordinates of its own
-	UnwrapSettings charts; // for that
-	std::string volumes;   // drawn as well; empty: none
-	bool mask = false;     // how they are drawn
+	UnwrapSettings charts;     // for that
+	std::string volumes;       // drawn as well; empty: none
+	bool mask = false;         // how they are drawn
 	int directions = 128;
 	bool color = false;
 	std::string to = "visibility";

@@ -319,8 +319,8 @@ Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& fa
 	const Unwrapped unwrapped = unwrap(level, piecesOf(target.places), options.charts, how);
 	BakeSettings settings = options.settings;
 	const std::vector<TextureBake> pages = bakePages(input.tracer, unwrapped, settings, how);
-	const LevelPart solid = partOf(
-		unwrapped.level, mapped(unwrapped.page_of, [](uint32_t page) { return uint8_t{page != kNoPage}; }), how.threads);
+	const LevelPart solid =
+		partOf(unwrapped.level, mapped(unwrapped.page_of, [](uint32_t page) { return uint8_t{page != kNoPage}; }), how.threads);
 	std::vector<uint32_t> page_of = unwrapped.page_of;
 	std::erase(page_of, kNoPage);
 	settings.receivers = &solid.level;
@@ -366,8 +366,8 @@ std::vector<uint8_t> turnSheets(Level& level, std::span<const UnwrapPiece> piece
 // Refuses a limit that values at the vertices alone exceed, however they turn out.
 void checkBytes(const BakeOptions& options, const BakeFile& target, const Level& level, GltfBake in)
 {
-	const std::vector<float> values =
-		listOf(level.positions.size(), [&](std::size_t v) { return static_cast<float>(v) / static_cast<float>(level.positions.size()); });
+	const std::vector<float> values = listOf(level.positions.size(), [&](std::size_t v)
+											 { return static_cast<float>(v) / static_cast<float>(level.positions.size()); });
 	in.visibility = values;
 	in.back = options.settings.sides == BakeSides::separate ? in.visibility : std::span<const float>();
 	const std::size_t bytes = bakeInto(target.file, target.places, in, {}).bytes_added;
@@ -461,7 +461,8 @@ Made makeAuto(const BakeOptions& options, const BakeInput& input, Facts& facts, 
 	if (bake.is_short)
 	{
 		made.warnings.push_back("--max-error: found an RMSE of " + roundedText(bake.expected_rmse, 3) + ", expected " +
-								roundedText(options.settings.max_error, 3) + " at most; texels are no smaller than a 32nd of the radius");
+								roundedText(options.settings.max_error, 3) +
+								" at most; texels are no smaller than a 32nd of the radius");
 	}
 	return made;
 }

@@ -57,8 +57,8 @@ class Chooser
 public:
 	Chooser(const Tracer& tracer, const Level& level, std::span<const UnwrapPiece> pieces, std::span<const AutoPiece> costs,
 			std::span<const uint8_t> turned, const BakeSettings& settings, const AutoSettings& wanted, const RunSettings& run)
-		: m_tracer(tracer), m_level(level), m_pieces(pieces), m_costs(costs), m_settings(settings),
-		  m_wanted(wanted), m_run(run), m_charted(chartLevel(level, pieces, run)), m_charts(m_charted.scaled.size())
+		: m_tracer(tracer), m_level(level), m_pieces(pieces), m_costs(costs), m_settings(settings), m_wanted(wanted), m_run(run),
+		  m_charted(chartLevel(level, pieces, run)), m_charts(m_charted.scaled.size())
 	{
 		for (std::size_t p = 0, t = 0; p < pieces.size(); ++p)
 		{
@@ -68,7 +68,8 @@ public:
 				{
 					m_charts[chart].piece = p;
 					m_charts[chart].triangles += 1;
-					m_charts[chart].is_open = costs[p].takes_texture && (m_charts[chart].triangles == 1 || m_charts[chart].is_open) &&
+					m_charts[chart].is_open = costs[p].takes_texture &&
+											  (m_charts[chart].triangles == 1 || m_charts[chart].is_open) &&
 											  (turned.empty() || turned[t] == 0);
 				}
 			}
@@ -105,8 +106,8 @@ public:
 				measureTextures(made, choice);
 				m_texel_bytes = std::max(0.05, m_texel_bytes * (1.0 + (added - choice.bytes) / std::max(1.0, texelBytes(choice))));
 				const bool fits = m_wanted.bytes > 0 ? made.bytes <= m_wanted.bytes : made.expected_rmse <= 1.02 * m_wanted.rmse;
-				const bool is_better = m_wanted.bytes > 0 ? fits && made.expected_rmse < best.expected_rmse
-														  : made.expected_rmse < best.expected_rmse;
+				const bool is_better =
+					m_wanted.bytes > 0 ? fits && made.expected_rmse < best.expected_rmse : made.expected_rmse < best.expected_rmse;
 				const bool is_last = fits && (m_wanted.bytes == 0 || added > 0.85 * aim || i > 1);
 				if (is_better)
 				{
@@ -226,7 +227,8 @@ private:
 						   glm::dvec2(interpolated(level.uvs, triangle, sample.b, sample.c)));
 		}
 		const bool back = sample.back && !bake.vertices.back.empty();
-		return static_cast<double>(interpolated(back ? bake.vertices.back : bake.vertices.visibility, triangle, sample.b, sample.c));
+		return static_cast<double>(
+			interpolated(back ? bake.vertices.back : bake.vertices.visibility, triangle, sample.b, sample.c));
 	}
 
 	// Squared errors of a bake without the rays' noise, summed over the area: of the fronts of each chart, and of all.
@@ -287,8 +289,9 @@ private:
 		AutoBake trial = bakeAt(levels, std::min(kTrialRays, m_settings.rays));
 		measureTextures(trial, {levels, 0.0, 0.0});
 		const double texels = sumOver(m_charts, [&](const ChartFacts& chart) { return chart.is_open ? texelsOf(chart, 0) : 0.0; });
-		m_texel_bytes = static_cast<double>(sumOver(trial.pages, [](const TextureBake& page)
-													{ return textureFile(page, ".png", "").size(); })) / texels;
+		m_texel_bytes = static_cast<double>(
+							sumOver(trial.pages, [](const TextureBake& page) { return textureFile(page, ".png", "").size(); })) /
+						texels;
 		return true;
 	}
 
@@ -309,7 +312,8 @@ private:
 
 	double texelsOf(const ChartFacts& chart, int level) const
 	{
-		const double across = std::sqrt(chart.area_m2) / m_trial_m * std::exp2(static_cast<double>(level)) + m_wanted.charts.margin_px;
+		const double across =
+			std::sqrt(chart.area_m2) / m_trial_m * std::exp2(static_cast<double>(level)) + m_wanted.charts.margin_px;
 		return across * across;
 	}
 
@@ -344,7 +348,8 @@ private:
 			double best = 0.0;
 			double bytes = 0.0;
 			double square = 0.0;
-			const double back = 3.0 * indexBytes(cost.vertices) * static_cast<double>(chart.triangles); // the rest has fewer indices
+			const double back =
+				3.0 * indexBytes(cost.vertices) * static_cast<double>(chart.triangles); // the rest has fewer indices
 			for (int level = kCoarsest; chart.is_open && level <= kFinest; ++level)
 			{
 				const double here = static_cast<double>(chart.vertices * (cost.bytes + 4) + 6 * chart.triangles) +

@@ -11,10 +11,10 @@ namespace nook
 
 struct AutoSettings
 {
-	double rmse = 0.0;         // > 0: as few bytes as that error takes
-	std::size_t bytes = 0;     // > 0: at most so many are added, with the least error
-	UnwrapSettings charts{};   // margin and pages
-	bool one_side = false;     // a texture darkens both sides of sheets, as colours do
+	double rmse = 0.0;       // > 0: as few bytes as that error takes
+	std::size_t bytes = 0;   // > 0: at most so many are added, with the least error
+	UnwrapSettings charts{}; // margin and pages
+	bool one_side = false;   // a texture darkens both sides of sheets, as colours do
 };
 
 // A glTF primitive at a place.
@@ -47,8 +47,8 @@ struct AutoBake
 };
 
 // `level`: with the triangles of all pieces. `turned`: 1 for each triangle of the pieces in order that the file has the other way
-// round, so that a texture cannot be on its front; empty: none. bytesOf(): bytes that a result adds to the file. Same result for any thread count. Progress stages of its
-// parts.
+// round, so that a texture cannot be on its front; empty: none. bytesOf(): bytes that a result adds to the file. Same result for
+// any thread count. Progress stages of its parts.
 AutoBake bakeAuto(const Tracer& tracer, const Level& level, std::span<const UnwrapPiece> pieces, std::span<const AutoPiece> costs,
 				  std::span<const uint8_t> turned, const BakeSettings& settings, const AutoSettings& wanted,
 				  const std::function<std::size_t(const AutoBake&)>& bytesOf, const RunSettings& run);

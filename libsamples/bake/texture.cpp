@@ -424,8 +424,7 @@ TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, in
 
 std::vector<Mask> masksOf(std::span<const TextureBake> pages)
 {
-	return mapped(pages,
-				  [](const TextureBake& page)
+	return mapped(pages, [](const TextureBake& page)
 				  { return Mask{"", page.size_px, page.size_px, Wrap::clamp, Wrap::clamp, page.values, false}; });
 }
 

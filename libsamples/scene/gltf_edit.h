@@ -80,6 +80,8 @@ private:
 	std::map<std::size_t, std::size_t> m_view_of_size; // of elements of that size
 };
 
+inline constexpr const char* kBakedImage = "visibility"; // name of the images of textures
+
 // Where a file stores visibility.
 enum class BakeTarget
 {
@@ -127,7 +129,8 @@ struct GltfCharts
 	std::vector<glm::vec2> uvs;               // of all
 	std::vector<std::vector<uint32_t>> pages; // indices of the triangles on each page of the texture
 
-	// For a bake of values as well: the triangles on pages leave the primitive, with arrays of the copies alone, and the rest stays.
+	// For a bake of values as well: the triangles on pages leave the primitive, with arrays of the copies alone, and the rest
+	// stays.
 	std::vector<uint32_t> rest{};
 	Numbers rest_vertices{};
 	std::vector<Numbers> page_vertices{};

@@ -98,7 +98,7 @@ private:
 	// The index of a texture made of a PNG file.
 	std::size_t textureOf(std::string_view png)
 	{
-		const std::size_t image = addImage("visibility", png);
+		const std::size_t image = addImage(kBakedImage, png);
 		if (m_sampler == kNoNumber)
 		{
 			m_sampler = m_editor.items("samplers").size();
@@ -333,11 +333,11 @@ private:
 
 	GltfEditor& m_editor;
 	const GltfBake& m_bake;
-	std::size_t m_sampler = kNoNumber;                                      // of the textures
-	std::map<std::pair<const char*, std::size_t>, std::size_t> m_textures;  // by picture and metallic-roughness texture
-	std::map<std::pair<std::size_t, std::size_t>, std::size_t> m_materials; // by the one before and the page
-	std::set<std::size_t> m_taken;                                          // materials that got a page, or stay as they are
-	std::map<std::pair<std::size_t, std::size_t>, Document> m_split;        // primitives with added vertices
+	std::size_t m_sampler = kNoNumber;                                       // of the textures
+	std::map<std::pair<const char*, std::size_t>, std::size_t> m_textures;   // by picture and metallic-roughness texture
+	std::map<std::pair<std::size_t, std::size_t>, std::size_t> m_materials;  // by the one before and the page
+	std::set<std::size_t> m_taken;                                           // materials that got a page, or stay as they are
+	std::map<std::pair<std::size_t, std::size_t>, Document> m_split;         // primitives with added vertices
 	std::map<std::pair<bool, std::vector<uint32_t>>, std::size_t> m_indices; // accessors
 	std::vector<GltfPlace>& m_parts;
 };

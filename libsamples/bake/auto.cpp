@@ -21,21 +21,26 @@ namespace nook
 namespace
 {
 
-constexpr int kTrialRays = 64;        // per texel of the trial
-constexpr double kTrialTexels = 2e6;  // most of the trial
-constexpr int kCoarsest = -2;         // texels of a chart: those of the trial, times 2^-k
-constexpr int kFinest = 3;            // a 32nd of the radius, as the shortest edges of --max-error
-constexpr double kOrder = 1.5;        // the squared error falls with the texel size to that power; measured on furnished rooms
-constexpr double kLeastSquare = 1e-5; // of a texture: 8 bits and rays
-constexpr double kWorthATry = 1e-4;   // squared error at the vertices
+constexpr int kTrialRays = 64;         // per texel of the trial
+constexpr double kTrialTexels = 2e6;   // most of the trial
+constexpr int kCoarsest = -2;          // texels of a chart: those of the trial, times 2^-k
+constexpr int kFinest = 3;             // a 32nd of the radius, as the shortest edges of --max-error
+constexpr int kVertices = kFinest + 1; // no texture
+constexpr double kOrder = 1.5;         // the squared error falls with the texel size to that power; measured on furnished rooms
+constexpr double kLeastSquare = 1e-5;  // of a texture: 8 bits and rays
+constexpr double kWorthATry = 1e-4;    // squared error at the vertices
 constexpr int kTries = 6;
+constexpr double kPointsOfTexel = 4.0; // that tell errors, per texel of the trial
+constexpr double kFewestPoints = 262144.0;
+constexpr double kMostPoints = 1048576.0;
+constexpr uint32_t kOther = 0x5eed0ffeU; // a sequence that neither the fit nor the check uses
 constexpr std::size_t kCheckPoints = 4096;
 constexpr std::size_t kShort = 65535; // vertices of 16-bit indices
 
 // What is known about a chart.
 struct ChartFacts
 {
-	double weight = 0.0;      // area of the sides where samples count, m²
+	double weight = 0.0;      // points on its front
 	double at_vertices = 0.0; // mean squared error of the front
 	double in_texture = 0.0;  // likewise at texels of the trial's size
 	double area_m2 = 0.0;
@@ -47,7 +52,7 @@ struct ChartFacts
 
 struct Choice
 {
-	std::vector<int> levels; // per chart; kFinest + 1: at the vertices
+	std::vector<int> levels; // per chart
 	double bytes = 0.0;      // more than with values alone
 	double square = 0.0;     // sum of squared errors over the area
 };
@@ -84,7 +89,7 @@ public:
 	AutoBake run(const std::function<std::size_t(const AutoBake&)>& bytesOf)
 	{
 		sample();
-		AutoBake none = bakeAt(std::vector<int>(m_charts.size(), kFinest + 1), m_settings.rays);
+		AutoBake none = bakeAt(std::vector<int>(m_charts.size(), kVertices), m_settings.rays);
 		none.bytes = bytesOf(none);
 		measureVertices(none);
 		AutoBake best = std::move(none);
@@ -139,48 +144,36 @@ private:
 		return packLevel(m_level, m_pieces, m_charted, densities, settings, m_run);
 	}
 
-	// Points of the whole surface, with rays: as many as for values at the vertices, and one in each square of a quarter of the
-	// radius.
+	// Points for the fit, as many as for values at the vertices, and others that tell how far its result is from rays.
 	void sample()
 	{
-		const Level level = pack(std::vector<int>(m_charts.size(), kFinest + 1)).level;
+		const Level level = pack(std::vector<int>(m_charts.size(), kVertices)).level;
 		m_areas = areasOf(level);
 		const double all_m2 = sumOver(m_areas);
-		const double quarter_m = std::isfinite(m_settings.radius_m)
-									 ? 0.25 * m_settings.radius_m
-									 : glm::distance(m_tracer.bounds().least, m_tracer.bounds().most) / 512.0;
-		m_trial_m = std::max(quarter_m, std::sqrt(all_m2 / kTrialTexels));
+		const double across_m = glm::distance(m_tracer.bounds().least, m_tracer.bounds().most);
+		m_trial_m = std::max(std::isfinite(m_settings.radius_m) ? 0.25 * m_settings.radius_m : across_m / 512.0,
+							 std::sqrt(all_m2 / kTrialTexels));
 		const int rays = std::min(m_settings.rays, kRaysOfPoint);
 		const auto unknowns = static_cast<double>(unknownsOf(level, m_settings.sides).count);
-		std::vector<std::size_t> counts =
-			samplesOfTriangles(m_areas, static_cast<std::size_t>(std::ceil(unknowns * m_settings.rays / rays)));
-		for (std::size_t t = 0; t < counts.size(); ++t)
-		{
-			counts[t] = std::max(counts[t], static_cast<std::size_t>(m_areas[t] / (m_trial_m * m_trial_m)));
-		}
-		m_samples = SamplePlaces(level, counts, m_settings.seed).all();
+		const auto count = static_cast<std::size_t>(std::ceil(unknowns * m_settings.rays / rays));
+		m_samples = SamplePlaces(level, samplesOfTriangles(m_areas, count), m_settings.seed).all();
 		traceSamples(m_tracer, level, m_samples, m_settings, rays, m_settings.seed, m_run, "rays");
-		std::vector<double> seen(m_areas.size(), 0.0);
-		for (const SurfaceSample& one : m_samples)
-		{
-			seen[one.triangle] += isSeen(one) ? 1.0 : 0.0;
-		}
-		for (const SurfaceSample& one : m_samples)
-		{
-			m_weights.push_back(isSeen(one) ? m_areas[one.triangle] / seen[one.triangle] : 0.0);
-		}
-		m_weight = sumOver(m_weights);
-		m_rays = m_samples.size() * static_cast<std::size_t>(rays);
+		const double points = std::clamp(kPointsOfTexel * all_m2 / (m_trial_m * m_trial_m), kFewestPoints, kMostPoints);
+		m_points = placeByArea(level, m_areas, static_cast<std::size_t>(points), m_settings.seed ^ kOther);
+		traceSamples(m_tracer, level, m_points, m_settings, kRaysOfPoint, m_settings.seed ^ kOther, m_run, "rays");
+		m_rays = m_samples.size() * static_cast<std::size_t>(rays) + m_points.size() * std::size_t{kRaysOfPoint};
+		std::erase_if(m_points, [](const SurfaceSample& point) { return point.buried || point.shut; });
 	}
 
-	static bool isSeen(const SurfaceSample& sample)
+	// On the side that a texture is for?
+	bool isFront(const SurfaceSample& sample) const
 	{
-		return !sample.buried && !sample.shut;
+		return !sample.back || m_wanted.one_side;
 	}
 
 	bool isTextured(const AutoBake& bake, const SurfaceSample& sample) const
 	{
-		return (!sample.back || m_wanted.one_side) && bake.unwrapped.page_of[sample.triangle] != kNoPage;
+		return isFront(sample) && bake.unwrapped.page_of[sample.triangle] != kNoPage;
 	}
 
 	// Bakes a choice: textures, and values at the vertices of the rest.
@@ -231,30 +224,33 @@ private:
 			interpolated(back ? bake.vertices.back : bake.vertices.visibility, triangle, sample.b, sample.c));
 	}
 
-	// Squared errors of a bake without the rays' noise, summed over the area: of the fronts of each chart, and of all.
+	// Sums of the points' squared errors without the rays' noise: of the fronts of each chart, and of all.
 	double squaresOf(const AutoBake& bake, std::vector<double>& of_chart) const
 	{
 		const std::vector<Mask> masks = masksOf(bake.pages);
 		of_chart.assign(m_charts.size(), 0.0);
 		double all = 0.0;
-		for (std::size_t i = 0; i < m_samples.size(); ++i)
+		for (const SurfaceSample& point : m_points)
 		{
-			const SurfaceSample& sample = m_samples[i];
-			const double off = valueAt(bake, masks, sample) - static_cast<double>(sample.visibility);
-			const auto unsure = static_cast<double>(sample.standard_error);
-			const double square = m_weights[i] > 0.0 ? m_weights[i] * (off * off - unsure * unsure) : 0.0;
-			all += square;
-			if (const uint32_t chart = m_charted.of_triangle[sample.triangle]; chart != kNoIndex && !sample.back)
+			const double off = valueAt(bake, masks, point) - static_cast<double>(point.visibility);
+			const auto unsure = static_cast<double>(point.standard_error);
+			all += off * off - unsure * unsure;
+			if (const uint32_t chart = m_charted.of_triangle[point.triangle]; chart != kNoIndex && isFront(point))
 			{
-				of_chart[chart] += square;
+				of_chart[chart] += off * off - unsure * unsure;
 			}
 		}
 		return all;
 	}
 
+	double weight() const
+	{
+		return static_cast<double>(std::max<std::size_t>(m_points.size(), 1));
+	}
+
 	void setExpected(AutoBake& bake, double square) const
 	{
-		bake.expected_rmse = std::sqrt(std::max(0.0, square) / std::max(m_weight, 1e-300));
+		bake.expected_rmse = std::sqrt(std::max(0.0, square) / weight());
 	}
 
 	void measureVertices(AutoBake& none)
@@ -262,12 +258,11 @@ private:
 		std::vector<double> of_chart;
 		m_square = squaresOf(none, of_chart);
 		setExpected(none, m_square);
-		for (std::size_t i = 0; i < m_samples.size(); ++i)
+		for (const SurfaceSample& point : m_points)
 		{
-			const uint32_t chart = m_charted.of_triangle[m_samples[i].triangle];
-			if (chart != kNoIndex && !m_samples[i].back)
+			if (const uint32_t chart = m_charted.of_triangle[point.triangle]; chart != kNoIndex && isFront(point))
 			{
-				m_charts[chart].weight += m_weights[i];
+				m_charts[chart].weight += 1.0;
 			}
 		}
 		for (std::size_t c = 0; c < m_charts.size(); ++c)
@@ -281,7 +276,7 @@ private:
 	// Bakes all charts that may gain, with few rays, to see how far a texture is from them. False if there are none.
 	bool tryTexture()
 	{
-		const std::vector<int> levels = mapped(m_charts, [](const ChartFacts& chart) { return chart.is_open ? 0 : kFinest + 1; });
+		const std::vector<int> levels = mapped(m_charts, [](const ChartFacts& chart) { return chart.is_open ? 0 : kVertices; });
 		if (std::all_of(levels.begin(), levels.end(), [](int level) { return level > kFinest; }))
 		{
 			return false;
@@ -330,7 +325,7 @@ private:
 	// Minimises error + price · bytes.
 	Choice chooseAt(double price) const
 	{
-		Choice choice{std::vector<int>(m_charts.size(), kFinest + 1), 0.0, m_square};
+		Choice choice{std::vector<int>(m_charts.size(), kVertices), 0.0, m_square};
 		struct Piece
 		{
 			double gain = 0.0;
@@ -380,7 +375,7 @@ private:
 			{
 				for (const std::size_t c : pieces[p].charts)
 				{
-					choice.levels[c] = kFinest + 1;
+					choice.levels[c] = kVertices;
 				}
 				continue;
 			}
@@ -402,8 +397,8 @@ private:
 		double high = 0.0;
 		const auto fits = [&](double price)
 		{
-			const Choice choice = chooseAt(std::exp2(price) * m_weight);
-			return m_wanted.bytes > 0 ? choice.bytes <= aim : std::sqrt(std::max(0.0, choice.square) / m_weight) > aim;
+			const Choice choice = chooseAt(std::exp2(price) * weight());
+			return m_wanted.bytes > 0 ? choice.bytes <= aim : std::sqrt(std::max(0.0, choice.square) / weight()) > aim;
 		};
 		low = -60.0;
 		for (int i = 0; i < 40; ++i)
@@ -411,7 +406,7 @@ private:
 			const double middle = 0.5 * (low + high);
 			(fits(middle) ? high : low) = middle;
 		}
-		return chooseAt(std::exp2(m_wanted.bytes > 0 ? high : low) * m_weight);
+		return chooseAt(std::exp2(m_wanted.bytes > 0 ? high : low) * weight());
 	}
 
 	// Errors of the result at other points, of all and of each kind.
@@ -451,9 +446,8 @@ private:
 	std::vector<ChartFacts> m_charts;
 	std::vector<double> m_areas;
 	std::vector<SurfaceSample> m_samples;
-	std::vector<double> m_weights; // of the samples, m²
-	double m_weight = 0.0;
-	double m_square = 0.0; // sum of squared errors with values alone
+	std::vector<SurfaceSample> m_points; // those that count
+	double m_square = 0.0;               // sum of squared errors with values alone
 	double m_trial_m = 1.0;
 	double m_texel_bytes = 0.5;
 	std::size_t m_rays = 0;

@@ -66,7 +66,7 @@ if not eval(sys.argv[1]):
 EOT
 }
 
-bake && mv s.json kept_old.json
+bake && mv s.json kept_old.json && mv out.glb kept_plain.glb
 bake --auto
 holds "the floor has a texture, and small triangles have none" '2 <= texture["triangles"] <= 12 and len(occluded) == 1'
 holds "every triangle is counted" 'texture["triangles"] + vertices["triangles"] == 12 + 2 * 39 * 39'
@@ -78,8 +78,6 @@ holds "the expected error is that of other points" 'abs(s["expected_rmse"] - s["
 holds "the choices take all bytes" 's["bytes_added"] == texture["bytes"] + vertices["bytes"] > s["png_bytes"] > 0'
 holds "bytes are those of the file" 'after["buffers"][0]["byteLength"] - before["buffers"][0]["byteLength"] - s["bytes_added"] in range(64)'
 holds "a stricter limit than values alone reach" 's["max_error"] == 0.03 and s["expected_rmse"] <= 0.031'
-checks=$((checks + 1))
-"$source/tests/additions.py" kept_room.glb out.glb >../log 2>&1
 mv out.glb kept_first.glb
 for threads in 1 2; do
 	checks=$((checks + 1))
@@ -119,10 +117,16 @@ holds "one part alone" 'all(("_VISIBILITY" in p["attributes"]) == (p["indices"] 
 # nook shade draws the texture.
 works '' gbuffer kept_room.glb --eye 3,3,3 --target 0,0,0 --fov 60 --size 64x36 -o kept_g.exr
 works '' reference kept_room.glb --gbuffer kept_g.exr --radius 1 --rays 256 -o kept_rays.exr
-works '' shade kept_g.exr --method bake --bake kept_first.glb -o v.exr
-works '' compare v.exr kept_rays.exr --mask kept_g.exr --json kept_auto.json
-works '' shade kept_g.exr --method bake --bake out.glb -o v.exr
-rm -f s.json out.glb v.exr
+for bake in kept_first.glb kept_plain.glb; do
+	works '' shade kept_g.exr --method bake --bake $bake -o v.exr
+	works '' compare v.exr kept_rays.exr --mask kept_g.exr --json $bake.json
+done
+checks=$((checks + 1))
+python3 -c "
+import json
+auto, plain = (json.load(open(f'kept_{name}.glb.json'))['errors']['rmse'] for name in ('first', 'plain'))
+assert auto < 0.5 * plain, (auto, plain)" 2>../log || problem "shade: $(tail -n 1 ../log), expected half of the error in a picture"
+rm -f s.json out.glb v.exr kept_*.glb.json
 
 for with in "--texture 64" --unwrap "--probes 1" "--fit points" --bent --color "--sides mean" "--instances shared" "--volumes kept_room.glb"; do
 	fails 1 "--?[a-z]*: found with --" bake kept_room.glb --radius 1 --auto $with -o out.glb

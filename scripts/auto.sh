@@ -41,16 +41,6 @@ bake()
 	row "$what" "$(field "$folder/b.json" bytes_added)" bake --bake "$folder/b.glb"
 }
 
-volumes()
-{
-	what=$1
-	method=$2
-	shift 2
-	run volumes "$level" --compress "$@" -o "$folder/v.glb"
-	volume_bytes=$(wc -c <"$folder/v.glb")
-	row "$what" "$volume_bytes" "$method" --volumes "$folder/v.glb"
-}
-
 echo '| level | asset | bytes | RMSE, view 2 | view 3 | processor time, s |'
 echo '| --- | --- | --- | --- | --- | --- |'
 while [ $# -gt 0 ]; do
@@ -67,8 +57,8 @@ while [ $# -gt 0 ]; do
 	vertices=$(field "$folder/b.json" vertices)
 	bake '`--auto`' --auto
 	bake '`--max-error 0.1`, a twentieth more vertices' --max-error 0.1 --max-vertices $((vertices * 21 / 20))
-	volumes 'sums' aov --distance "$(awk "BEGIN { print 0.6 * $radius }")" --ray-distance "$radius" --compensate
-	[ "$volume_bytes" -le "$values" ] || bake '`--auto --max-bytes`' --auto --max-bytes "$volume_bytes"
-	volumes 'masks' aov-mask --distance "$radius" --masks --detail auto
+	run volumes "$level" --compress --distance "$radius" --masks --detail auto -o "$folder/v.glb"
+	volume_bytes=$(wc -c <"$folder/v.glb")
+	row masks "$volume_bytes" aov-mask --volumes "$folder/v.glb"
 	[ "$volume_bytes" -le "$values" ] || bake '`--auto --max-bytes`' --auto --max-bytes "$volume_bytes"
 done

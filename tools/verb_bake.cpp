@@ -413,8 +413,8 @@ Made makeAuto(const BakeOptions& options, const BakeInput& input, Facts& facts, 
 	checkTarget(target.file, nodes, in);
 	BakeSettings settings = options.settings;
 	settings.max_error = 0.0;
-	AutoSettings wanted{options.settings.max_error, options.max_bytes, options.charts, settings.sides == BakeSides::mean};
-	wanted.charts.pages = 64;
+	const AutoSettings wanted{options.settings.max_error, options.max_bytes, options.charts.margin_px,
+							  settings.sides == BakeSides::mean};
 	const std::vector<std::size_t> vertex_bytes = vertexBytes(target.file, target.places);
 	const std::size_t value_bytes = settings.sides == BakeSides::separate ? 8 : 4;
 	const auto costOf = [&](std::size_t i)

@@ -29,7 +29,10 @@ constexpr int kVertices = kFinest + 1; // no texture
 constexpr double kOrder = 1.5;         // the squared error falls with the texel size to that power; measured on furnished rooms
 constexpr double kLeastSquare = 1e-5;  // of a texture: 8 bits and rays
 constexpr double kWorthATry = 1e-4;    // squared error at the vertices
+constexpr int kPage_px = 4096;
+constexpr double kTexelsOfPage = 8e6; // half of it
 constexpr int kTries = 6;
+constexpr double kEnough = 1.02;       // of the error asked for
 constexpr double kPointsOfTexel = 4.0; // that tell errors, per texel of the trial
 constexpr double kFewestPoints = 262144.0;
 constexpr double kMostPoints = 1048576.0;
@@ -44,6 +47,7 @@ struct ChartFacts
 	double at_vertices = 0.0; // mean squared error of the front
 	double in_texture = 0.0;  // likewise at texels of the trial's size
 	double area_m2 = 0.0;
+	double across_m = 0.0; // its longer side
 	std::size_t piece = 0;
 	std::size_t triangles = 0;
 	std::size_t vertices = 0;
@@ -81,8 +85,10 @@ public:
 		}
 		for (std::size_t c = 0; c < m_charts.size(); ++c)
 		{
+			const FlatChart& flat = m_charted.flat[m_charted.scaled[c].chart];
 			m_charts[c].area_m2 = m_charted.areas_m2[c];
-			m_charts[c].vertices = m_charted.flat[m_charted.scaled[c].chart].points.size();
+			m_charts[c].across_m = m_charted.scaled[c].scale * std::max(flat.size.x, flat.size.y);
+			m_charts[c].vertices = flat.points.size();
 		}
 	}
 
@@ -97,11 +103,13 @@ public:
 		const bool is_enough = m_wanted.bytes == 0 && best.expected_rmse <= m_wanted.rmse;
 		if (!is_enough && tryTexture())
 		{
-			double aim = m_wanted.bytes > 0 ? static_cast<double>(m_wanted.bytes - std::min(m_wanted.bytes, base)) : m_wanted.rmse;
+			const bool by_bytes = m_wanted.bytes > 0;
+			const double limit = by_bytes ? static_cast<double>(m_wanted.bytes - std::min(m_wanted.bytes, base)) : m_wanted.rmse;
+			double aim = limit;
 			for (int i = 0; i < kTries; ++i)
 			{
 				const Choice choice = choose(aim);
-				if (std::all_of(choice.levels.begin(), choice.levels.end(), [](int level) { return level > kFinest; }))
+				if (std::all_of(choice.levels.begin(), choice.levels.end(), [](int level) { return level == kVertices; }))
 				{
 					break;
 				}
@@ -110,11 +118,10 @@ public:
 				const auto added = static_cast<double>(made.bytes - std::min(base, made.bytes));
 				measureTextures(made, choice);
 				m_texel_bytes = std::max(0.05, m_texel_bytes * (1.0 + (added - choice.bytes) / std::max(1.0, texelBytes(choice))));
-				const bool fits = m_wanted.bytes > 0 ? made.bytes <= m_wanted.bytes : made.expected_rmse <= 1.02 * m_wanted.rmse;
-				const bool is_better =
-					m_wanted.bytes > 0 ? fits && made.expected_rmse < best.expected_rmse : made.expected_rmse < best.expected_rmse;
-				const bool is_last = fits && (m_wanted.bytes == 0 || added > 0.85 * aim || i > 1);
-				if (is_better)
+				const bool fits = by_bytes ? made.bytes <= m_wanted.bytes : made.expected_rmse <= kEnough * limit;
+				const bool is_last = fits && (!by_bytes || added > 0.85 * limit || i > 1);
+				aim = fits ? limit : 0.96 * (i > 1 ? aim : limit);
+				if ((fits || !by_bytes) && made.expected_rmse < best.expected_rmse)
 				{
 					best = std::move(made);
 				}
@@ -122,25 +129,31 @@ public:
 				{
 					break;
 				}
-				const double off = m_wanted.bytes > 0 ? static_cast<double>(m_wanted.bytes - base) : m_wanted.rmse;
-				aim = fits ? off : (m_wanted.bytes > 0 ? 0.97 : 0.95) * (i > 1 ? aim : off);
 			}
 		}
 		best.value_bytes = base;
-		best.is_short = m_wanted.bytes == 0 && best.expected_rmse > 1.02 * m_wanted.rmse;
+		best.is_short = m_wanted.bytes == 0 && best.expected_rmse > kEnough * m_wanted.rmse;
 		check(best);
 		return best;
 	}
 
 private:
-	// Levels of detail → a packed level, whose textures are not baked.
+	// Levels of detail → a packed level, whose textures are not baked: one page, or several if there are many texels.
 	Unwrapped pack(const std::vector<int>& levels) const
 	{
-		UnwrapSettings settings = m_wanted.charts;
-		settings.texel_m = m_trial_m;
-		settings.size_px = 0;
-		const std::vector<double> densities =
-			mapped(levels, [](int level) { return level > kFinest ? 0.0 : std::exp2(static_cast<double>(level)); });
+		double texels = 0.0;
+		std::vector<double> densities;
+		for (std::size_t c = 0; c < levels.size(); ++c)
+		{
+			densities.push_back(levels[c] == kVertices ? 0.0 : std::exp2(static_cast<double>(levels[c])));
+			texels += levels[c] == kVertices ? 0.0 : texelsOf(m_charts[c], levels[c]);
+		}
+		UnwrapSettings settings{m_trial_m, 0, 1, m_wanted.margin_px};
+		if (texels > kTexelsOfPage)
+		{
+			settings.size_px = kPage_px;
+			settings.pages = static_cast<std::size_t>(4.0 * texels / kTexelsOfPage);
+		}
 		return packLevel(m_level, m_pieces, m_charted, densities, settings, m_run);
 	}
 
@@ -269,7 +282,7 @@ private:
 		{
 			ChartFacts& chart = m_charts[c];
 			chart.at_vertices = chart.weight > 0.0 ? std::max(0.0, of_chart[c] / chart.weight) : 0.0;
-			chart.is_open = chart.is_open && chart.at_vertices > kWorthATry;
+			chart.is_open = chart.is_open && chart.at_vertices > kWorthATry && fitsPage(chart, 0);
 		}
 	}
 
@@ -277,7 +290,7 @@ private:
 	bool tryTexture()
 	{
 		const std::vector<int> levels = mapped(m_charts, [](const ChartFacts& chart) { return chart.is_open ? 0 : kVertices; });
-		if (std::all_of(levels.begin(), levels.end(), [](int level) { return level > kFinest; }))
+		if (std::all_of(levels.begin(), levels.end(), [](int level) { return level == kVertices; }))
 		{
 			return false;
 		}
@@ -307,9 +320,14 @@ private:
 
 	double texelsOf(const ChartFacts& chart, int level) const
 	{
-		const double across =
-			std::sqrt(chart.area_m2) / m_trial_m * std::exp2(static_cast<double>(level)) + m_wanted.charts.margin_px;
+		const double across = std::sqrt(chart.area_m2) / m_trial_m * std::exp2(static_cast<double>(level)) + m_wanted.margin_px;
 		return across * across;
+	}
+
+	bool fitsPage(const ChartFacts& chart, int level) const
+	{
+		const int margins = 2 * (m_wanted.margin_px + 1);
+		return chart.across_m / m_trial_m * std::exp2(static_cast<double>(level)) + margins <= static_cast<double>(kPage_px);
 	}
 
 	double texelBytes(const Choice& choice) const
@@ -345,7 +363,7 @@ private:
 			double square = 0.0;
 			const double back =
 				3.0 * indexBytes(cost.vertices) * static_cast<double>(chart.triangles); // the rest has fewer indices
-			for (int level = kCoarsest; chart.is_open && level <= kFinest; ++level)
+			for (int level = kCoarsest; chart.is_open && level <= kFinest && fitsPage(chart, level); ++level)
 			{
 				const double here = static_cast<double>(chart.vertices * (cost.bytes + 4) + 6 * chart.triangles) +
 									m_texel_bytes * texelsOf(chart, level) - back;

@@ -11,10 +11,10 @@ namespace nook
 
 struct AutoSettings
 {
-	double rmse = 0.0;       // > 0: as few bytes as that error takes
-	std::size_t bytes = 0;   // > 0: at most so many are added, with the least error
-	UnwrapSettings charts{}; // margin and pages
-	bool one_side = false;   // a texture darkens both sides of sheets, as colours do
+	double rmse = 0.0;     // > 0: as few bytes as that error takes
+	std::size_t bytes = 0; // > 0: at most so many are added, with the least error
+	int margin_px = 3;     // of charts
+	bool one_side = false; // a texture darkens both sides of sheets, as colours do
 };
 
 // A glTF primitive at a place.

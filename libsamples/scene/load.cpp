@@ -608,7 +608,7 @@ BakedValues loadBakedValues(const std::string& path, const Level& level, const R
 			baked.front.push_back(value.x);
 			baked.back.push_back(value.y);
 		}
-		if (bakeRecordOf(path).value("pages", 0U) > 0)
+		if (const nlohmann::ordered_json record = bakeRecordOf(path); record.is_object() && numberIn(record, "pages", 0) > 0)
 		{
 			addPages(path, level, run, baked);
 		}

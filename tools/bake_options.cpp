@@ -23,8 +23,9 @@ constexpr std::array<std::string_view, 2> kBakeSides{"separate", "mean"};       
 constexpr std::array<std::string_view, 2> kBakeNormals{"geometric", "interpolated"};         // of NormalKind
 constexpr std::array<std::string_view, 3> kBakeInstances{"separate", "shared", "attribute"}; // of BakeInstances
 constexpr std::array<std::string_view, 6> kBakeTargets{"visibility", "color", "color-alpha", "texcoord", "custom", "texture"};
-constexpr int kMostSet = 7;            // of texture coordinates
-constexpr int kStandardTexture = 1024; // texels across
+constexpr int kMostSet = 7;             // of texture coordinates
+constexpr int kStandardTexture = 1024;  // texels across
+constexpr double kStandardError = 0.03; // of --auto
 
 // Letters, digits and _.
 bool isPlainName(std::string_view name)
@@ -65,6 +66,7 @@ std::span<const std::string_view> volumesBy()
 OptionRules ofVertices(std::vector<OptionRule> excludes = {}, std::vector<OptionRule> needs = {})
 {
 	excludes.push_back({"--texture or --probes", "one of them, since it is of vertices"});
+	excludes.push_back({"--auto", "one of them, since it chooses by itself"});
 	return {.excludes = std::move(excludes), .needs = std::move(needs)};
 }
 
@@ -95,9 +97,19 @@ void declareBake(CLI::App& app, BakeOptions& options)
 		 {"--normals", takesChoice(kBakeNormals, settings.normals),
 		  "Rays lie around the triangles' own normals (default) or around those of the vertices, interpolated",
 		  excludes("--probes", "none, since probes have all normals")},
-		 {"--max-error", takesNumber(settings.max_error, 1e-3, 1.0),
-		  "Splits triangles whose root mean square error is above that, and neighbours, so that no crack opens",
-		  ofVertices({{"--fit points", "--fit surface, whose error it is"}})},
+		 {"--max-error",
+		  takesNumber(settings.max_error, 1e-3, 1.0),
+		  "Splits triangles whose root mean square error is above that, and neighbours, so that no crack opens; with --auto: the "
+		  "root mean square error of the surface (default 0.03)",
+		  {.excludes = {{"--fit points", "--fit surface, whose error it is"}, {"--texture or --probes", "one of them"}}}},
+		 {"--auto", takesFlag(options.automatic),
+		  "A texture for the surfaces where values at vertices are far off, and values at the vertices of the rest, with the least "
+		  "bytes for --max-error or the least error for --max-bytes",
+		  excludes("--texture or --unwrap or --probes")},
+		 {"--max-bytes",
+		  takesWhole(options.max_bytes, 1, kMaxFileBytes),
+		  "With --auto: no more bytes than that are added to the level",
+		  {.excludes = {{"--max-error", "one of them"}}, .needs = {{"--auto", "both or none"}}}},
 		 {"--max-vertices", takesWhole(settings.max_vertices, 3, 100'000'000),
 		  "With --max-error: no more vertices than that (default 2000000)", ofVertices({}, {{"--max-error", "both or none"}})},
 		 {"--to",
@@ -154,8 +166,8 @@ void declareBake(CLI::App& app, BakeOptions& options)
 		  {.needs = {unwrap}}},
 		 {"--margin",
 		  takesWhole(options.charts.margin_px, 0, kMostMargin_px),
-		  "With --unwrap: texels around each chart that no other has (default 3, which keeps two mipmaps apart)",
-		  {.needs = {unwrap}}},
+		  "With --unwrap or --auto: texels around each chart that no other has (default 3, which keeps two mipmaps apart)",
+		  {.needs = {{"--unwrap or --auto", "--unwrap or --auto", "without them"}}}},
 		 {"--probes", takesNumber(options.probes_m, 1e-6, 1e9),
 		  "Metres between the probes of a grid, for what moves, in place of vertices: a texture (.ktx2) and its reader (.glsl)"},
 		 seedRow(settings.seed)});
@@ -170,9 +182,9 @@ void settleBake(BakeOptions& options)
 	{
 		refuse("--to: found '" + options.to + "' with --texture, expected --to texture");
 	}
-	if (options.target == BakeTarget::texture && isGiven(*options.app, "--max-error"))
+	if (options.target == BakeTarget::texture && (isGiven(*options.app, "--max-error") || options.automatic))
 	{
-		refuse("--max-error: found with --to texture, expected vertices");
+		refuse((options.automatic ? "--auto" : "--max-error") + std::string(": found with --to texture, expected vertices"));
 	}
 	if (options.unwrap && options.target != BakeTarget::texture && isGiven(*options.app, "--to"))
 	{
@@ -205,9 +217,16 @@ void settleBake(BakeOptions& options)
 	{
 		refuse("--radius: found 'inf', expected metres, since --falloff linear is a share of it");
 	}
-	if (options.outputs.share && settings.max_error > 0.0)
+	if (options.outputs.share && (settings.max_error > 0.0 || options.automatic))
 	{
-		refuse("--share: found with --max-error, expected one of them, since what is split next depends on all so far");
+		refuse("--share: found with " + std::string(options.automatic ? "--auto" : "--max-error") +
+			   ", expected one of them, since what is next depends on all so far");
+	}
+	if (options.automatic)
+	{
+		settings.max_error = options.max_bytes > 0 || settings.max_error > 0.0 ? settings.max_error : kStandardError;
+		const bool one_value = options.target == BakeTarget::color || options.target == BakeTarget::color_alpha;
+		settings.sides = one_value ? BakeSides::mean : settings.sides;
 	}
 	settings.falloff_u_m = falloffUnit(options.falloff_u_m, settings.radius_m, settings.falloff);
 }
@@ -217,7 +236,7 @@ void addBakeSettings(Facts& facts, const BakeOptions& options)
 	const BakeSettings& settings = options.settings;
 	const bool probes = options.probes_m > 0.0;
 	const bool texture = options.texture_px > 0;
-	facts.text("kind", probes ? "probes" : texture ? "texture" : "vertices");
+	facts.text("kind", probes ? "probes" : texture ? "texture" : options.automatic ? "auto" : "vertices");
 	if (!options.volumes.empty())
 	{
 		facts.text("beside", volumesBy()[options.mask ? 1 : 0]);
@@ -244,7 +263,11 @@ void addBakeSettings(Facts& facts, const BakeOptions& options)
 	if (settings.max_error > 0.0)
 	{
 		facts.number("max_error", settings.max_error);
-		facts.whole("max_vertices", settings.max_vertices);
+		options.automatic ? void() : facts.whole("max_vertices", settings.max_vertices);
+	}
+	if (options.max_bytes > 0)
+	{
+		facts.whole("max_bytes", options.max_bytes);
 	}
 	for (const auto& [name, patterns] : {std::pair("occluders", &options.occluders), {"receivers", &options.receivers}})
 	{

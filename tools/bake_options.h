@@ -23,10 +23,12 @@ struct BakeOptions
 	std::optional<double> falloff_u_m;
 	double probes_m = 0.0; // spacing; 0: vertices
 	int texture_px = 0;    // 0: vertices
-	bool unwrap = false;   // texture coordinates of its own
-	UnwrapSettings charts; // for that
-	std::string volumes;   // drawn as well; empty: none
-	bool mask = false;     // how they are drawn
+	bool automatic = false;
+	std::size_t max_bytes = 0; // with that; 0: by the error
+	bool unwrap = false;       // texture coordinates of its own
+	UnwrapSettings charts;     // for that
+	std::string volumes;       // drawn as well; empty: none
+	bool mask = false;         // how they are drawn
 	int directions = 128;
 	bool color = false;
 	std::string to = "visibility";

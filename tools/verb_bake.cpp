@@ -3,6 +3,7 @@
 #include "bake_options.h"
 #include "call.h"
 
+#include "bake/auto.h"
 #include "bake/probes.h"
 #include "core/image.h"
 #include "core/lists.h"
@@ -29,6 +30,7 @@ namespace
 
 constexpr std::array<std::string_view, 5> kBakeFormats{".glb", ".gltf", ".csv", ".npy", ".json"};
 constexpr std::array<std::string_view, 5> kTextureFormats{".glb", ".gltf", ".png", ".exr", ".ktx2"};
+constexpr std::array<std::string_view, 2> kAutoFormats{".glb", ".gltf"};
 constexpr std::array<std::string_view, 2> kProbeFormats{".ktx2", ".glsl"};
 constexpr std::size_t kCheckPoints = 4096;
 constexpr const char* kProgram = "nook " NOOK_VERSION;
@@ -316,22 +318,12 @@ Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& fa
 	const Level& level = input.in_place ? as_read : input.level();
 	const Unwrapped unwrapped = unwrap(level, piecesOf(target.places), options.charts, how);
 	BakeSettings settings = options.settings;
-	const auto marksOf = [&](const auto& isWanted)
-	{
-		return mapped(unwrapped.page_of, [&](uint32_t page) { return static_cast<uint8_t>(isWanted(page) ? 1 : 0); });
-	};
-	std::vector<TextureBake> pages;
-	for (std::size_t page = 0; page < unwrapped.pages; ++page)
-	{
-		const LevelPart part = partOf(unwrapped.level, marksOf([page](uint32_t of) { return of == page; }), how.threads);
-		settings.receivers = &part.level;
-		pages.push_back(bakeTexture(input.tracer, part.level.uvs, unwrapped.size_px, settings, how));
-	}
-	const LevelPart solid = partOf(unwrapped.level, marksOf([](uint32_t of) { return of != kNoPage; }), how.threads);
+	const std::vector<TextureBake> pages = bakePages(input.tracer, unwrapped, settings, how);
+	const LevelPart solid =
+		partOf(unwrapped.level, mapped(unwrapped.page_of, [](uint32_t page) { return uint8_t{page != kNoPage}; }), how.threads);
 	std::vector<uint32_t> page_of = unwrapped.page_of;
 	std::erase(page_of, kNoPage);
 	settings.receivers = &solid.level;
-	finishTextures(solid.level, solid.level.uvs, page_of, pages, how.threads);
 	const BakeCheck check = checkTexture(input.tracer, solid.level.uvs, pages, page_of, settings, kCheckPoints, how);
 	if (isShare(how))
 	{
@@ -353,6 +345,125 @@ Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& fa
 	addBakeCheck(facts, options, check, "points of the surface");
 	addFile(facts, input, baked);
 	addTextureFiles(options, pages, made);
+	return made;
+}
+
+// The triangles of a level as the file has them: 1 for each one of the pieces in order that aligning its sheets turns.
+std::vector<uint8_t> turnSheets(Level& level, std::span<const UnwrapPiece> pieces, int threads)
+{
+	const std::vector<glm::uvec3> before = level.triangles;
+	std::vector<uint8_t> turned;
+	for (const bool any = alignSheets(level, threads) > 0; const UnwrapPiece& piece : pieces)
+	{
+		for (std::size_t i = 0; any && i < piece.triangles.size(); ++i)
+		{
+			turned.push_back(before[piece.triangles[i]] == level.triangles[piece.triangles[i]] ? 0 : 1);
+		}
+	}
+	return turned;
+}
+
+// Refuses a limit that values at the vertices alone exceed, however they turn out.
+void checkBytes(const BakeOptions& options, const BakeFile& target, const Level& level, GltfBake in)
+{
+	const std::vector<float> values = listOf(level.positions.size(), [&](std::size_t v)
+											 { return static_cast<float>(v) / static_cast<float>(level.positions.size()); });
+	in.visibility = values;
+	in.back = options.settings.sides == BakeSides::separate ? in.visibility : std::span<const float>();
+	const std::size_t bytes = bakeInto(target.file, target.places, in, {}).bytes_added;
+	if (options.max_bytes > 0 && bytes > options.max_bytes)
+	{
+		refuse("--max-bytes: found " + std::to_string(options.max_bytes) + ", expected at least " + std::to_string(bytes) +
+			   ", which values at the vertices take");
+	}
+}
+
+// Two rows of a table, and the same for programs.
+void addShares(Facts& facts, const AutoBake& bake)
+{
+	std::vector<Facts> items;
+	const std::size_t more = bake.bytes - std::min(bake.bytes, bake.value_bytes);
+	for (const auto& [name, share, bytes] :
+		 {std::tuple("texture", &bake.textured, more), {"vertices", &bake.at_vertices, bake.bytes - more}})
+	{
+		Facts& item = items.emplace_back();
+		item.text("kind", name);
+		item.whole("triangles", share->triangles);
+		item.number("area_m2", share->area_m2);
+		item.whole("bytes", bytes);
+		item.number("rmse", share->rmse);
+		facts.line(std::string(name) + ": " + std::to_string(share->triangles) + " triangles, " + roundedText(share->area_m2, 3) +
+				   " m2, " + std::to_string(bytes) + " bytes, RMSE " + roundedText(share->rmse, 3));
+	}
+	facts.items("choices", items);
+}
+
+Made makeAuto(const BakeOptions& options, const BakeInput& input, Facts& facts, const RunSettings& how)
+{
+	Level level;
+	GltfBake in = bakeOf(options);
+	const BakeFile target = fileOf(options, input, input.level(), in, how, &level);
+	level = input.in_place ? std::move(level) : input.level();
+	const std::vector<UnwrapPiece> pieces = piecesOf(target.places);
+	const std::vector<uint8_t> turned = turnSheets(level, pieces, how.threads);
+	checkBytes(options, target, level, in);
+	std::vector<GltfPlace> nodes = target.places;
+	std::erase_if(nodes, [](const GltfPlace& place) { return place.instance.has_value(); });
+	in.charts.resize(1);
+	checkTarget(target.file, nodes, in);
+	BakeSettings settings = options.settings;
+	settings.max_error = 0.0;
+	const AutoSettings wanted{options.settings.max_error, options.max_bytes, options.charts.margin_px,
+							  settings.sides == BakeSides::mean};
+	const std::vector<std::size_t> vertex_bytes = vertexBytes(target.file, target.places);
+	const std::size_t value_bytes = settings.sides == BakeSides::separate ? 8 : 4;
+	const auto costOf = [&](std::size_t i)
+	{
+		const GltfPlace& place = target.places[i];
+		return AutoPiece{vertex_bytes[i] + value_bytes, place.count, !place.instance};
+	};
+	Made made;
+	std::optional<GltfBaked> baked;
+	const auto bytesOf = [&](const AutoBake& bake)
+	{
+		Unwrapped unwrapped = bake.unwrapped;
+		VertexBake vertices = bake.vertices;
+		turnBack(unwrapped.level, vertices, turned);
+		in.visibility = vertices.visibility;
+		in.back = vertices.back;
+		in.charts = chartsAndRest(target.places, unwrapped);
+		in.pages = mapped(bake.pages, pngOf);
+		in.record["pages"] = in.pages.size();
+		made = {};
+		baked = write(options, target, unwrapped.level, in, made);
+		return baked->bytes_added;
+	};
+	const AutoBake bake =
+		bakeAuto(input.tracer, level, pieces, listOf(pieces.size(), costOf), turned, settings, wanted, bytesOf, how);
+	bytesOf(bake);
+	const std::size_t png_bytes = sumOver(in.pages, [](const std::string& png) { return png.size(); });
+	facts.whole("pages", bake.pages.size());
+	facts.whole("png_bytes", png_bytes);
+	if (!bake.pages.empty())
+	{
+		facts.whole("texels_across", bake.unwrapped.size_px);
+		facts.whole("charts", bake.unwrapped.charts);
+		facts.number("coverage", bake.unwrapped.coverage);
+		facts.line("texture: " + std::to_string(bake.unwrapped.charts) + " charts on " +
+				   counted(bake.pages.size(), "page", "pages") + " of " + std::to_string(bake.unwrapped.size_px) + " texels, " +
+				   std::to_string(png_bytes) + " bytes as PNG");
+	}
+	addShares(facts, bake);
+	addBakeResult(facts, options, bake.vertices);
+	addBakeCheck(facts, options, bake.check, "points of the surface");
+	facts.number("expected_rmse", bake.expected_rmse);
+	addFile(facts, input, *baked);
+	if (bake.is_short)
+	{
+		made.warnings.push_back("--max-error: found an RMSE of " + roundedText(bake.expected_rmse, 3) + ", expected " +
+								roundedText(options.settings.max_error, 3) +
+								" at most; texels are no smaller than a 32nd of the radius");
+	}
 	return made;
 }
 
@@ -463,6 +574,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 	};
 	checkOutputs(options.outputs,
 				 probes                   ? std::span<const std::string_view>(kProbeFormats)
+				 : options.automatic      ? std::span<const std::string_view>(kAutoFormats)
 				 : options.texture_px > 0 ? std::span<const std::string_view>(kTextureFormats)
 										  : kBakeFormats,
 				 others(inputs));
@@ -518,6 +630,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 	facts.whole("turned_triangles", turned);
 	addBakeSettings(facts, options);
 	const Made made = probes                   ? makeProbes(options, input, facts, how)
+					  : options.automatic      ? makeAuto(options, input, facts, how)
 					  : options.unwrap         ? makeUnwrapped(options, input, facts, how)
 					  : options.texture_px > 0 ? makeTexture(options, input, facts, how)
 											   : makeVertices(options, input, facts, how);

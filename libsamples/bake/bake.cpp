@@ -131,8 +131,18 @@ constexpr double kSameDepth = 1e-3; // relative depth: above the precision of 24
 // Value of the side that was hit; NaN if a vertex has none.
 float valueOf(const Level& level, const BakedValues& baked, const RayHit& hit)
 {
-	return interpolated(hit.front ? baked.front : baked.back, level.triangles[hit.triangle], static_cast<float>(hit.barycentric.x),
-						static_cast<float>(hit.barycentric.y));
+	const glm::uvec3 triangle = level.triangles[hit.triangle];
+	const glm::vec2 at(hit.barycentric);
+	const float value = interpolated(hit.front ? baked.front : baked.back, triangle, at.x, at.y);
+	const Material& material = level.material_list[level.materials[hit.triangle]];
+	const auto image = static_cast<std::size_t>(std::max(material.occlusion, 0));
+	if (material.occlusion < 0 || image >= baked.pages.size() || baked.pages[image].width_px == 0 ||
+		(!hit.front && material.two_sided))
+	{
+		return value;
+	}
+	const auto texture = alphaAt(baked.pages[image], glm::dvec2(interpolated(baked.uvs, triangle, at.x, at.y)));
+	return value * static_cast<float>(texture);
 }
 
 } // namespace

@@ -422,20 +422,16 @@ TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, in
 	return bake;
 }
 
+std::vector<Mask> masksOf(std::span<const TextureBake> pages)
+{
+	return mapped(pages, [](const TextureBake& page)
+				  { return Mask{"", page.size_px, page.size_px, Wrap::clamp, Wrap::clamp, page.values, false}; });
+}
+
 BakeCheck checkTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, std::span<const TextureBake> pages,
 					   std::span<const uint32_t> page_of, const BakeSettings& settings, std::size_t points, const RunSettings& run)
 {
-	const std::vector<Mask> masks = mapped(pages,
-										   [](const TextureBake& page)
-										   {
-											   Mask mask; // one channel, sampled like a texture unit does
-											   mask.width_px = page.size_px;
-											   mask.height_px = page.size_px;
-											   mask.wrap_u = Wrap::clamp;
-											   mask.wrap_v = Wrap::clamp;
-											   mask.alpha = page.values;
-											   return mask;
-										   });
+	const std::vector<Mask> masks = masksOf(pages);
 	const Level& level = surfaceOf(tracer, settings);
 	const auto valueOf = [&](const SurfaceSample& sample)
 	{

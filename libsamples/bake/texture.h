@@ -47,6 +47,9 @@ void finishTextures(const Level& level, std::span<const glm::vec2> uvs, std::spa
 // A finished texture as a file: ".png" in 8 bits, ".exr" in 32 bits, ".ktx2" in blocks (BC4) with all mipmaps. `writer`: of KTX2.
 std::string textureFile(const TextureBake& bake, std::string_view ending, std::string_view writer);
 
+// The finished textures as the masks that a texture unit reads, one per page.
+std::vector<Mask> masksOf(std::span<const TextureBake> pages);
+
 // Like checkBake, for the texture sampled bilinearly as by a texture unit.
 BakeCheck checkTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, std::span<const TextureBake> pages,
 					   std::span<const uint32_t> page_of, const BakeSettings& settings, std::size_t points, const RunSettings& run);

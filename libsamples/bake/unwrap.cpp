@@ -105,11 +105,10 @@ std::vector<std::size_t> chartedPieces(const Level& level, std::span<const Unwra
 
 } // namespace
 
-Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const UnwrapSettings& settings, const RunSettings& run)
+ChartedLevel chartLevel(const Level& level, std::span<const UnwrapPiece> pieces, const RunSettings& run)
 {
-	assert(settings.texel_m > 0.0 || settings.size_px > 0);
-	Unwrapped made;
-	std::optional<ProgressCounter> stage(std::in_place, run.progress, "charts");
+	const ProgressCounter stage(run.progress, "charts");
+	ChartedLevel made;
 	const std::vector<std::size_t> charted = chartedPieces(level, pieces);
 	const std::vector<Chart> charts = chartsOf(level, pieces, charted, run.threads);
 	std::vector<std::size_t> first_of{0}; // triangle of each piece with charts of its own
@@ -119,7 +118,7 @@ Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const 
 	}
 	std::vector<std::pair<uint32_t, uint32_t>> chart_of(first_of.back(), {kNoIndex, 0}); // and the number in it
 	std::vector<std::vector<uint32_t>> of_piece(pieces.size());
-	const std::vector<FlatChart> flat = mapped(charts, [](const Chart& chart) { return chart.flat; });
+	made.flat = mapped(charts, [](const Chart& chart) { return chart.flat; });
 	for (uint32_t c = 0; c < charts.size(); ++c)
 	{
 		for (uint32_t i = 0; i < charts[c].triangles.size(); ++i)
@@ -129,14 +128,10 @@ Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const 
 		const auto next = std::upper_bound(first_of.begin(), first_of.end(), charts[c].triangles[0]);
 		of_piece[static_cast<std::size_t>(next - first_of.begin()) - 1].push_back(c);
 	}
-	// The charts of all places, each as large as its triangles there.
-	std::vector<ScaledChart> scaled;
-	std::vector<std::unordered_map<uint32_t, uint32_t>> placed(pieces.size()); // chart → index into `scaled`
-	double area = 0.0;
-	double stretch = 0.0;
 	for (std::size_t p = 0; p < pieces.size(); ++p)
 	{
 		const std::size_t from = charted[p];
+		std::unordered_map<uint32_t, uint32_t> placed; // chart → index into `scaled`
 		for (const uint32_t c : of_piece[from])
 		{
 			double there = 0.0;
@@ -146,52 +141,87 @@ Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const 
 			}
 			if (there > 0.0 && there < kFarthest_m * kFarthest_m)
 			{
-				placed[p][c] = static_cast<uint32_t>(scaled.size());
-				scaled.push_back({c, std::sqrt(there / charts[c].area)});
-				area += there;
-				stretch += charts[c].stretch * there / charts[c].area;
+				placed[c] = static_cast<uint32_t>(made.scaled.size());
+				made.scaled.push_back({c, std::sqrt(there / charts[c].area)});
+				made.areas_m2.push_back(there);
+				made.stretches.push_back(charts[c].stretch * there / charts[c].area);
 			}
 		}
+		for (std::size_t i = 0; i < pieces[p].triangles.size(); ++i)
+		{
+			const auto [chart, number] = chart_of[first_of[from] + i];
+			const auto found = placed.find(chart);
+			made.of_triangle.push_back(found == placed.end() ? kNoIndex : found->second);
+			made.number.push_back(number);
+		}
 	}
-	if (scaled.empty())
+	if (made.scaled.empty())
 	{
 		refuseInput(level.name + ": unwrap", "no triangle with an area", "a surface");
 	}
-	stage.emplace(run.progress, "pages");
-	const std::vector<ChartPlace> places = place(flat, scaled, settings, run.threads, made, level.name);
-	made.charts = scaled.size();
-	made.stretch = std::sqrt(stretch / area);
+	return made;
+}
+
+Unwrapped packLevel(const Level& level, std::span<const UnwrapPiece> pieces, const ChartedLevel& charted,
+					std::span<const double> densities, const UnwrapSettings& settings, const RunSettings& run)
+{
+	assert(settings.texel_m > 0.0 || settings.size_px > 0);
+	const ProgressCounter stage(run.progress, "pages");
+	Unwrapped made;
+	std::vector<ScaledChart> packed;
+	std::vector<uint32_t> place_of(charted.scaled.size(), kNoIndex); // index into `packed`
+	double area = 0.0;
+	double stretch = 0.0;
+	for (std::size_t i = 0; i < charted.scaled.size(); ++i)
+	{
+		const double density = densities.empty() ? 1.0 : densities[i];
+		if (density > 0.0)
+		{
+			place_of[i] = static_cast<uint32_t>(packed.size());
+			packed.push_back({charted.scaled[i].chart, density * charted.scaled[i].scale});
+			area += charted.areas_m2[i] * density * density;
+			stretch += charted.stretches[i] * density * density;
+		}
+	}
+	std::vector<ChartPlace> places;
+	if (!packed.empty())
+	{
+		places = place(charted.flat, packed, settings, run.threads, made, level.name);
+		made.stretch = std::sqrt(stretch / area);
+	}
+	made.charts = packed.size();
 	for (const ChartPlace& one : places)
 	{
 		made.pages = std::max<std::size_t>(made.pages, one.page + std::size_t{1});
 	}
 	const double across = made.texel_m * made.size_px;
-	made.coverage = area / (static_cast<double>(made.pages) * across * across);
+	made.coverage = packed.empty() ? 0.0 : area / (static_cast<double>(made.pages) * across * across);
 	made.level.name = level.name;
 	made.level.material_list = level.material_list;
 	std::unordered_map<uint64_t, uint32_t> known; // vertices by their chart's vertex and the level's
 	uint32_t first = 0;
-	std::vector<uint32_t> first_point(scaled.size());
-	for (std::size_t i = 0; i < scaled.size(); ++i)
+	std::vector<uint32_t> first_point(packed.size());
+	for (std::size_t i = 0; i < packed.size(); ++i)
 	{
 		first_point[i] = first;
-		first += static_cast<uint32_t>(flat[scaled[i].chart].points.size());
+		first += static_cast<uint32_t>(charted.flat[packed[i].chart].points.size());
 	}
-	for (std::size_t p = 0; p < pieces.size(); ++p)
+	std::size_t next = 0;
+	for (const UnwrapPiece& piece : pieces)
 	{
 		known.clear();
-		const std::size_t from = charted[p];
-		for (std::size_t i = 0; i < pieces[p].triangles.size(); ++i)
+		for (const uint32_t t : piece.triangles)
 		{
-			const auto [chart, number] = chart_of[first_of[from] + i];
-			const auto found = placed[p].find(chart);
-			const glm::uvec3 corners = level.triangles[pieces[p].triangles[i]];
+			const uint32_t scaled = charted.of_triangle[next];
+			const uint32_t at_page = scaled == kNoIndex ? kNoIndex : place_of[scaled];
+			const bool none = at_page == kNoIndex;
+			const glm::uvec3 corners = level.triangles[t];
 			glm::uvec3 triangle(0);
 			for (int k = 0; k < 3; ++k)
 			{
-				const bool none = found == placed[p].end();
-				const uint32_t point = none ? 0 : flat[chart].triangles[number][k];
-				const uint64_t key = none ? kNoIndex : first_point[found->second] + point;
+				const FlatChart* const chart = none ? nullptr : &charted.flat[packed[at_page].chart];
+				const uint32_t point = none ? 0 : chart->triangles[charted.number[next]][k];
+				const uint64_t key = none ? kNoIndex : first_point[at_page] + point;
 				const auto [at, is_new] =
 					known.try_emplace(key << 32U | corners[k], static_cast<uint32_t>(made.level.positions.size()));
 				if (is_new)
@@ -200,17 +230,23 @@ Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const 
 					made.level.normals.push_back(level.normals[corners[k]]);
 					made.level.uvs.push_back(
 						none ? glm::vec2(0.0F)
-							 : glm::vec2(places[found->second].at(flat[chart].points[point]) / static_cast<double>(made.size_px)));
+							 : glm::vec2(places[at_page].at(chart->points[point]) / static_cast<double>(made.size_px)));
 				}
 				triangle[k] = at->second;
 			}
 			made.level.triangles.push_back(triangle);
-			made.level.materials.push_back(level.materials[pieces[p].triangles[i]]);
-			made.page_of.push_back(found == placed[p].end() ? kNoPage : places[found->second].page);
+			made.level.materials.push_back(level.materials[t]);
+			made.page_of.push_back(none ? kNoPage : places[at_page].page);
+			next += 1;
 		}
 	}
 	made.level.meshes.push_back({level.name, 0, made.level.triangles.size()});
 	return made;
+}
+
+Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const UnwrapSettings& settings, const RunSettings& run)
+{
+	return packLevel(level, pieces, chartLevel(level, pieces, run), {}, settings, run);
 }
 
 std::vector<UnwrapPiece> piecesOf(std::span<const GltfPlace> places)
@@ -223,6 +259,71 @@ std::vector<UnwrapPiece> piecesOf(std::span<const GltfPlace> places)
 		pieces.push_back({place.triangles, is_new ? SIZE_MAX : at->second});
 	}
 	return pieces;
+}
+
+std::vector<TextureBake> bakePages(const Tracer& tracer, const Unwrapped& unwrapped, BakeSettings settings, const RunSettings& run)
+{
+	const auto partWith = [&](const auto& isWanted)
+	{
+		return partOf(unwrapped.level, mapped(unwrapped.page_of, [&](uint32_t page) { return uint8_t{isWanted(page)}; }),
+					  run.threads);
+	};
+	std::vector<TextureBake> pages;
+	for (std::size_t page = 0; page < unwrapped.pages; ++page)
+	{
+		const LevelPart part = partWith([page](uint32_t of) { return of == page; });
+		settings.receivers = &part.level;
+		pages.push_back(bakeTexture(tracer, part.level.uvs, unwrapped.size_px, settings, run));
+	}
+	const LevelPart textured = partWith([](uint32_t of) { return of != kNoPage; });
+	std::vector<uint32_t> page_of = unwrapped.page_of;
+	std::erase(page_of, kNoPage);
+	finishTextures(textured.level, textured.level.uvs, page_of, pages, run.threads);
+	return pages;
+}
+
+std::vector<GltfCharts> chartsAndRest(std::span<const GltfPlace> places, const Unwrapped& unwrapped)
+{
+	std::vector<GltfCharts> charts;
+	std::vector<uint32_t> number(unwrapped.level.positions.size(), kNoIndex);
+	std::size_t triangle = 0;
+	for (const GltfPlace& place : places)
+	{
+		GltfCharts& made = charts.emplace_back();
+		made.pages.resize(unwrapped.pages);
+		made.page_vertices.resize(unwrapped.pages);
+		for (const glm::uvec3 file : place.corners)
+		{
+			const glm::uvec3 corner = unwrapped.level.triangles[triangle];
+			const uint32_t page = unwrapped.page_of[triangle];
+			triangle += 1;
+			for (int k = 0; k < 3; ++k)
+			{
+				const uint32_t v = corner[place.mirrored ? (3 - k) % 3 : k];
+				const bool is_new = number[v] == kNoIndex;
+				if (page == kNoPage)
+				{
+					made.rest.push_back(file[k]);
+					number[v] = file[k];
+				}
+				else
+				{
+					number[v] = is_new ? static_cast<uint32_t>(made.copied.size()) : number[v];
+					made.pages[page].push_back(number[v]);
+				}
+				if (is_new)
+				{
+					(page == kNoPage ? made.rest_vertices : made.page_vertices[page]).emplace_back(number[v], v);
+				}
+				if (is_new && page != kNoPage)
+				{
+					made.copied.emplace_back(file[k], file[k]);
+					made.uvs.push_back(unwrapped.level.uvs[v]);
+				}
+			}
+		}
+	}
+	return charts;
 }
 
 std::vector<GltfCharts> chartsOf(std::span<const GltfPlace> places, const Unwrapped& unwrapped)

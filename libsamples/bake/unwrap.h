@@ -2,6 +2,7 @@
 // Gives every triangle a place of its own in a texture: charts, their coordinates, and where they lie on the texture's pages.
 #pragma once
 
+#include "bake/texture.h"
 #include "core/progress.h"
 #include "scene/gltf_edit.h"
 #include "scene/level.h"
@@ -49,17 +50,6 @@ struct Unwrapped
 inline constexpr uint32_t kNoPage = UINT32_MAX;
 inline constexpr uint32_t kNoIndex = UINT32_MAX;
 
-// Triangles of a chart have the same orientation in the texture and do not overlap. Throws Error (invalid_input) if the pages are
-// too small. Same result for any thread count. Progress stages "charts" and "pages".
-Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const UnwrapSettings& settings, const RunSettings& run);
-
-// A glTF file's primitives at their places as pieces, and what they become. Not for instances, which share
-// their coordinates.
-std::vector<UnwrapPiece> piecesOf(std::span<const GltfPlace> places);
-std::vector<GltfCharts> chartsOf(std::span<const GltfPlace> places, const Unwrapped& unwrapped);
-
-// Shared by its parts.
-
 // A chart in metres, between (0, 0) and `size`.
 struct FlatChart
 {
@@ -67,6 +57,47 @@ struct FlatChart
 	std::vector<glm::dvec2> points;
 	std::vector<glm::uvec3> triangles;
 };
+
+// One of the charts, larger by a factor.
+struct ScaledChart
+{
+	std::size_t chart = 0;
+	double scale = 1.0;
+};
+
+// Charts of a level's pieces at all their places, before they have a place in a texture.
+struct ChartedLevel
+{
+	std::vector<FlatChart> flat;
+	std::vector<ScaledChart> scaled;   // each as large as its triangles at that place
+	std::vector<uint32_t> of_triangle; // per triangle of the pieces in order: index into `scaled`; kNoIndex without an area
+	std::vector<uint32_t> number;      // and its number in that chart
+	std::vector<double> areas_m2;      // per entry of `scaled`
+	std::vector<double> stretches;     // sums of squares by area, likewise
+};
+ChartedLevel chartLevel(const Level& level, std::span<const UnwrapPiece> pieces, const RunSettings& run);
+
+// Packs them. `densities`: factor of the texels per metre of each entry of `scaled`, 0 for those without a place, whose triangles
+// have kNoPage and share vertices as in the level; empty: 1 for all.
+Unwrapped packLevel(const Level& level, std::span<const UnwrapPiece> pieces, const ChartedLevel& charted,
+					std::span<const double> densities, const UnwrapSettings& settings, const RunSettings& run);
+
+// Triangles of a chart have the same orientation in the texture and do not overlap. Throws Error (invalid_input) if the pages are
+// too small. Same result for any thread count. Progress stages "charts" and "pages".
+Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const UnwrapSettings& settings, const RunSettings& run);
+
+// Textures of the pages, finished. Progress stage "texels".
+std::vector<TextureBake> bakePages(const Tracer& tracer, const Unwrapped& unwrapped, BakeSettings settings, const RunSettings& run);
+
+// A glTF file's primitives at their places as pieces, and what they become. Not for instances, which share
+// their coordinates.
+std::vector<UnwrapPiece> piecesOf(std::span<const GltfPlace> places);
+std::vector<GltfCharts> chartsOf(std::span<const GltfPlace> places, const Unwrapped& unwrapped);
+
+// Likewise for a bake that has values at the vertices of triangles without a page.
+std::vector<GltfCharts> chartsAndRest(std::span<const GltfPlace> places, const Unwrapped& unwrapped);
+
+// Shared by its parts.
 
 struct Chart
 {
@@ -103,13 +134,6 @@ struct ChartPlace
 	{
 		return corner + scale * (turned ? glm::dvec2(-point.y, point.x) : point);
 	}
-};
-
-// One of the charts, larger by a factor.
-struct ScaledChart
-{
-	std::size_t chart = 0;
-	double scale = 1.0;
 };
 
 // Places for charts at so many texels per metre, without common texels within the margin; none if they do not fit.

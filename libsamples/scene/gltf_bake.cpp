@@ -154,10 +154,15 @@ public:
 		}
 		if (!m_bake.png.empty() || !m_bake.charts.empty())
 		{
-			made.copies += addTextures(m_editor, m_bake, places, units, m_set_of_material);
+			made.copies += addTextures(m_editor, m_bake, places, units, m_set_of_material, m_parts);
 		}
 		made.bytes_added = m_editor.bytesAdded();
 		made.kept_alpha = m_kept_alpha.size();
+	}
+
+	std::vector<GltfPlace> takeParts()
+	{
+		return std::move(m_parts);
 	}
 
 private:
@@ -510,7 +515,38 @@ private:
 	std::map<std::tuple<std::size_t, std::size_t, bool>, std::vector<std::size_t>> m_groups_of; // by positions, colours, sides
 	std::set<std::size_t> m_kept_alpha;                                                         // materials
 	std::map<std::size_t, int> m_set_of_material; // texture coordinates that were added
+	std::vector<GltfPlace> m_parts;               // of primitives with charts
 };
+
+// Gives some of the places' triangles textures, and the places what is left for values: the rest, and the triangles on pages.
+void addCharts(GltfEditor& editor, const GltfBake& bake, GltfBaked& made)
+{
+	GltfBake textures = bake;
+	textures.visibility = textures.back = {};
+	textures.charts.clear();
+	std::vector<GltfPlace> textured;
+	std::vector<GltfPlace> others;
+	for (std::size_t i = 0; i < made.places.size(); ++i)
+	{
+		const GltfCharts& charts = bake.charts[i];
+		(charts.uvs.empty() ? others : textured).push_back(made.places[i]);
+		if (charts.uvs.empty())
+		{
+			others.back().vertices = charts.rest_vertices;
+			continue;
+		}
+		textures.charts.push_back(charts);
+	}
+	if (!textured.empty())
+	{
+		Baker baker(editor, textures);
+		baker.add(textured, made);
+		const std::vector<GltfPlace> parts = baker.takeParts();
+		others.insert(others.end(), parts.begin(), parts.end());
+		editor.settle();
+	}
+	made.places = std::move(others);
+}
 
 } // namespace
 
@@ -548,6 +584,34 @@ void checkTarget(const GltfFile& file, std::span<const GltfPlace> places, const 
 	Baker(editor, bake).check(places);
 }
 
+std::vector<std::size_t> vertexBytes(const GltfFile& file, std::span<const GltfPlace> places)
+{
+	GltfEditor editor(file, "-");
+	return mapped(places,
+				  [&editor](const GltfPlace& place)
+				  {
+					  const Document& primitive =
+						  editor.primitiveOf(numberIn(editor.items("nodes")[place.node], "mesh"), place.primitive);
+					  std::vector<Document> arrays{primitive["attributes"]};
+					  for (const Document& target : primitive.value("targets", Document::array()))
+					  {
+						  arrays.push_back(target);
+					  }
+					  std::size_t bytes = 0;
+					  for (const Document& one : arrays)
+					  {
+						  for (const Document& accessor : one)
+						  {
+							  const Document& item = editor.items("accessors")[accessor.get<std::size_t>()];
+							  const std::size_t size =
+								  componentsOf(textIn(item, "type")) * bytesOfComponent(numberIn(item, "componentType"));
+							  bytes += (size + 3) / 4 * 4;
+						  }
+					  }
+					  return bytes;
+				  });
+}
+
 GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, const GltfBake& bake,
 				   std::span<const std::string> outputs)
 {
@@ -560,7 +624,13 @@ GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, cons
 		GltfEditor editor(file, output);
 		made.places.assign(places.begin(), places.end());
 		made.copies = bake.split.how == nullptr ? 0 : splitTriangles(editor, made.places, bake.split);
-		Baker(editor, bake).add(made.places, made);
+		GltfBake values = bake;
+		if (!bake.charts.empty() && !bake.visibility.empty())
+		{
+			addCharts(editor, bake, made);
+			values.charts.clear();
+		}
+		Baker(editor, values).add(made.places, made);
 		if (!outputs.empty())
 		{
 			files.push_back(editor.take(output, bake.record));

@@ -75,9 +75,10 @@ private:
 };
 
 // Gives the materials of units a texture of the bake, and primitives coordinates if it has charts. `set_of_material`: texture
-// coordinates that were added. Returns the number of copies of meshes.
+// coordinates that were added; `parts` gets what primitives become that keep a rest. Returns the number of copies of meshes.
 std::size_t addTextures(GltfEditor& editor, const GltfBake& bake, std::span<const GltfPlace> places,
-						const std::vector<MeshUnit>& units, const std::map<std::size_t, int>& set_of_material);
+						const std::vector<MeshUnit>& units, const std::map<std::size_t, int>& set_of_material,
+						std::vector<GltfPlace>& parts);
 
 // Throws for what addTextures() would.
 void checkTextures(GltfEditor& editor, const GltfBake& bake, const std::vector<MeshUnit>& units);

@@ -80,6 +80,8 @@ private:
 	std::map<std::size_t, std::size_t> m_view_of_size; // of elements of that size
 };
 
+inline constexpr const char* kBakedImage = "visibility"; // name of the images of textures
+
 // Where a file stores visibility.
 enum class BakeTarget
 {
@@ -104,7 +106,8 @@ using VertexPairs = std::vector<std::pair<uint32_t, uint32_t>>;
 
 // Gives a primitive further vertices in all attributes and morph targets. Unit vectors keep their length, a vertex has the joints
 // with the largest weights, and integers of custom attributes are those of the first vertex.
-void addVertices(GltfEditor& editor, nlohmann::ordered_json& primitive, const VertexPairs& added);
+// `alone`: without the vertices that it had.
+void addVertices(GltfEditor& editor, nlohmann::ordered_json& primitive, const VertexPairs& added, bool alone = false);
 
 // Splits triangles at the middles of edges, in copies of meshes that other nodes have as well. Triangles before and after it;
 // `places` get the added vertices. Returns the number of copies. Not for instances, which share triangles.
@@ -120,9 +123,17 @@ std::size_t splitTriangles(GltfEditor& editor, std::vector<GltfPlace>& places, c
 // How a primitive is split between charts of a texture: the vertices that the file has stay, copies follow them.
 struct GltfCharts
 {
+	using Numbers = std::vector<std::pair<uint32_t, uint32_t>>; // of vertices: in the primitive, and in the level
+
 	VertexPairs copied;                       // the vertex that each further one copies, twice
 	std::vector<glm::vec2> uvs;               // of all
 	std::vector<std::vector<uint32_t>> pages; // indices of the triangles on each page of the texture
+
+	// For a bake of values as well: the triangles on pages leave the primitive, with arrays of the copies alone, and the rest
+	// stays.
+	std::vector<uint32_t> rest{};
+	Numbers rest_vertices{};
+	std::vector<Numbers> page_vertices{};
 };
 
 struct GltfBake : GlbBake
@@ -131,7 +142,8 @@ struct GltfBake : GlbBake
 	std::string attribute; // of BakeTarget::texcoord and custom: TEXCOORD_2, _AO
 	BakeInstances instances = BakeInstances::separate;
 	std::optional<uint32_t> uv_set; // coordinates in the file that `png` uses, in place of `uvs`
-	std::vector<GltfCharts> charts; // for each place; a set of coordinates for them, and a page of the texture each
+	std::vector<GltfCharts> charts; // for each place; a set of coordinates for them, and a page of the texture each. With
+									// `visibility`: at places without `uvs` everything stays
 	std::vector<std::string> pages; // of the texture, as PNG
 	GltfSplit split;                // the values belong to the triangles after it
 	bool in_red = false;            // textures go into the red channel of the materials' metallic-roughness textures
@@ -161,6 +173,9 @@ GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, cons
 
 // Throws as bakeInto() does for what depends on the file alone, before there are values. `bake.charts`: not empty for charts.
 void checkTarget(const GltfFile& file, std::span<const GltfPlace> places, const GltfBake& bake);
+
+// Bytes of a vertex of each place's primitive, in all its arrays.
+std::vector<std::size_t> vertexBytes(const GltfFile& file, std::span<const GltfPlace> places);
 
 // asset.extras.nook of a .gltf or .glb file; null without a bake, and for other files.
 nlohmann::ordered_json bakeRecordOf(const std::string& path);

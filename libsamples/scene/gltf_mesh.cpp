@@ -229,7 +229,8 @@ private:
 		const auto baked = std::find(kBakedSets.begin(), kBakedSets.end(), set);
 		if (baked == kBakedSets.end())
 		{
-			primitive.second = coordinates(attributes, set);
+			primitive.second =
+				coordinates(attributes, set == kOcclusionSet ? m_source.materials[primitive.material].occlusion_set : set);
 			return;
 		}
 		const std::string name(kBakedNames[static_cast<std::size_t>(baked - kBakedSets.begin())]);

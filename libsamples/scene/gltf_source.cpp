@@ -63,6 +63,14 @@ public:
 			made.material.extras = extrasOf(item);
 			made.material.two_sided = item.boolean("doubleSided", false);
 			made.material.cutoff = item.number("alphaCutoff", 0.5);
+			if (const std::optional<JsonValue> occlusion = item.object("occlusionTexture"))
+			{
+				const std::optional<std::size_t> texture = occlusion->index("index", m_root.count("textures"));
+				const std::optional<std::size_t> image =
+					texture ? m_root.item("textures", *texture).index("source", m_root.count("images")) : std::nullopt;
+				made.material.occlusion = image ? static_cast<int>(*image) : -1;
+				made.occlusion_set = static_cast<uint32_t>(occlusion->whole("texCoord", UINT32_MAX).value_or(0));
+			}
 			const std::string mode = item.text("alphaMode", "OPAQUE");
 			if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND")
 			{

@@ -72,11 +72,12 @@ public:
 		return isWhole() ? 1.0 : oneOf(m_component);
 	}
 
-	// An accessor with all of them; copies have the same bytes.
-	std::size_t stored(const VertexPairs& added) const
+	// An accessor with all of them, or with the further ones `alone`; copies have the same bytes.
+	std::size_t stored(const VertexPairs& added, bool alone) const
 	{
 		std::string bytes;
-		for (std::size_t i = 0; i < m_values.count() + added.size(); ++i)
+		const std::size_t first = alone ? m_values.count() : 0;
+		for (std::size_t i = first; i < m_values.count() + added.size(); ++i)
 		{
 			const auto [a, b] =
 				i < m_values.count() ? std::pair(static_cast<uint32_t>(i), static_cast<uint32_t>(i)) : added[i - m_values.count()];
@@ -91,8 +92,18 @@ public:
 			padTo4(bytes);
 		}
 		Document item = m_item;
-		const std::size_t made = m_editor.addAccessor(textIn(item, "type"), m_component, m_values.count() + added.size(), bytes);
+		const std::size_t count = m_values.count() + added.size() - first;
+		const std::size_t made = m_editor.addAccessor(textIn(item, "type"), m_component, count, bytes);
 		item.erase("sparse");
+		for (std::size_t k = 0; alone && item.contains("min") && k < m_width; ++k)
+		{
+			const std::vector<double> numbers =
+				mapped(added, [&](const auto& pair) { return number(pair.first, k) * (isWhole() ? 1.0 : one()); });
+			const auto [least, most] = std::minmax_element(numbers.begin(), numbers.end());
+			const bool is_float = m_component == 5126;
+			item["min"][k] = is_float ? Document(*least) : Document(std::lround(*least));
+			item["max"][k] = is_float ? Document(*most) : Document(std::lround(*most));
+		}
 		item.update(m_editor.items("accessors")[made]);
 		m_editor.items("accessors")[made] = std::move(item);
 		return made;
@@ -187,12 +198,12 @@ public:
 		}
 	}
 
-	void store(Document& attributes, const VertexPairs& added)
+	void store(Document& attributes, const VertexPairs& added, bool alone)
 	{
 		for (std::size_t set = 0; set < m_joints.size(); ++set)
 		{
-			attributes[name("JOINTS_", set)] = m_joints[set].stored(added);
-			attributes[name("WEIGHTS_", set)] = m_weights[set].stored(added);
+			attributes[name("JOINTS_", set)] = m_joints[set].stored(added, alone);
+			attributes[name("WEIGHTS_", set)] = m_weights[set].stored(added, alone);
 		}
 	}
 
@@ -394,7 +405,7 @@ void appendComponent(std::string& bytes, uint64_t component, double value, bool 
 	}
 }
 
-void addVertices(GltfEditor& editor, Document& primitive, const VertexPairs& added)
+void addVertices(GltfEditor& editor, Document& primitive, const VertexPairs& added, bool alone)
 {
 	if (added.empty())
 	{
@@ -406,7 +417,7 @@ void addVertices(GltfEditor& editor, Document& primitive, const VertexPairs& add
 	{
 		Elements elements(editor, accessor.get<std::size_t>());
 		addMeans(elements, name, added);
-		accessor = elements.stored(added);
+		accessor = elements.stored(added, alone);
 	};
 	for (const auto& attribute : attributes.items())
 	{
@@ -420,7 +431,7 @@ void addVertices(GltfEditor& editor, Document& primitive, const VertexPairs& add
 	{
 		skin.add(added[i].first, added[i].second);
 	}
-	skin.store(attributes, added);
+	skin.store(attributes, added, alone);
 	Document none = Document::array();
 	for (Document& target : primitive.contains("targets") ? primitive["targets"] : none)
 	{

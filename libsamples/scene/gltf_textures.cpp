@@ -22,7 +22,10 @@ constexpr const char* kRough = "metallicRoughnessTexture";
 class TextureBaker
 {
 public:
-	TextureBaker(GltfEditor& editor, const GltfBake& bake) : m_editor(editor), m_bake(bake) {}
+	TextureBaker(GltfEditor& editor, const GltfBake& bake, std::vector<GltfPlace>& parts)
+		: m_editor(editor), m_bake(bake), m_parts(parts)
+	{
+	}
 
 	void check(const std::vector<MeshUnit>& units)
 	{
@@ -51,6 +54,14 @@ public:
 		{
 			keepOthers(units);
 		}
+		for (std::size_t i = 0; has_charts && i < places.size(); ++i)
+		{
+			if (!m_bake.charts[i].rest.empty())
+			{
+				const std::size_t mesh = numberIn(m_editor.items("nodes")[places[i].node], "mesh");
+				m_taken.insert(numberIn(m_editor.primitiveOf(mesh, places[i].primitive), "material"));
+			}
+		}
 		const std::size_t free = has_charts ? freeSet(units) : 0;
 		OwnMeshes own(m_editor);
 		for (const MeshUnit& unit : units)
@@ -61,7 +72,8 @@ public:
 			{
 				if (has_charts)
 				{
-					addCharts(unit, number, mesh, m_bake.charts[static_cast<std::size_t>(at.front() - places.data())], free);
+					const auto place = static_cast<std::size_t>(at.front() - places.data());
+					addCharts(unit, places[place], mesh, m_bake.charts[place], free);
 					continue;
 				}
 				const std::size_t before = numberIn(m_editor.primitiveOf(mesh, number), "material");
@@ -86,7 +98,7 @@ private:
 	// The index of a texture made of a PNG file.
 	std::size_t textureOf(std::string_view png)
 	{
-		const std::size_t image = addImage("visibility", png);
+		const std::size_t image = addImage(kBakedImage, png);
 		if (m_sampler == kNoNumber)
 		{
 			m_sampler = m_editor.items("samplers").size();
@@ -229,19 +241,61 @@ private:
 		}
 	}
 
-	// A primitive of a node's own mesh: one for each page.
-	void addCharts(const MeshUnit& unit, std::size_t number, std::size_t mesh, const GltfCharts& charts, std::size_t set)
+	// An accessor of indices, the same for the same ones; in 16 bits if `is_short`.
+	std::size_t indicesOf(const std::vector<uint32_t>& indices, bool is_short)
 	{
-		const auto [shared, is_new] = m_split.try_emplace({unit.mesh, number}, m_editor.primitiveOf(mesh, number));
+		const auto [accessor, is_new] = m_indices.try_emplace({is_short, indices}, 0);
 		if (is_new)
 		{
-			addVertices(m_editor, shared->second, charts.copied);
+			const uint64_t component = is_short ? 5123 : 5125;
+			std::string bytes;
+			std::for_each(indices.begin(), indices.end(), [&](uint32_t index) { appendComponent(bytes, component, index, false); });
+			padTo4(bytes);
+			accessor->second = m_editor.addAccessor("SCALAR", component, indices.size(), bytes, true);
 		}
-		Document primitive = shared->second;
+		return accessor->second;
+	}
+
+	// Coordinates on pages; in 16 bits if `is_short`: a sixteenth of a texel of 4096.
+	std::size_t coordinatesOf(const std::vector<glm::vec2>& uvs, bool is_short)
+	{
+		const uint64_t component = is_short ? 5123 : 5126;
+		std::string bytes;
+		for (const glm::vec2 uv : uvs)
+		{
+			appendComponent(bytes, component, static_cast<double>(uv.x), is_short);
+			appendComponent(bytes, component, static_cast<double>(uv.y), is_short);
+		}
+		const std::size_t made = m_editor.addAccessor("VEC2", component, uvs.size(), bytes);
+		if (is_short)
+		{
+			m_editor.items("accessors")[made]["normalized"] = true;
+		}
+		return made;
+	}
+
+	// A primitive of a node's own mesh: one for each page, and one for the rest if values go there.
+	void addCharts(const MeshUnit& unit, const GltfPlace& place, std::size_t mesh, const GltfCharts& charts, std::size_t set)
+	{
+		constexpr std::size_t kShort = 65535; // vertices of 16-bit indices, of which the greatest is reserved
+		const std::size_t number = place.primitive;
+		const bool alone = !charts.page_vertices.empty();
+		Document primitive = m_editor.primitiveOf(mesh, number);
+		if (alone)
+		{
+			addVertices(m_editor, primitive, charts.copied, true);
+		}
+		else
+		{
+			const auto [shared, is_new] = m_split.try_emplace({unit.mesh, number}, primitive);
+			if (is_new)
+			{
+				addVertices(m_editor, shared->second, charts.copied);
+			}
+			primitive = shared->second;
+		}
 		const std::size_t before = numberIn(primitive, "material");
-		std::string uvs;
-		std::for_each(charts.uvs.begin(), charts.uvs.end(), [&uvs](glm::vec2 uv) { appendRaw(uvs, uv); });
-		const std::size_t coordinates = m_editor.addAccessor("VEC2", 5126, charts.uvs.size(), uvs);
+		const std::size_t coordinates = coordinatesOf(charts.uvs, alone);
 		for (std::size_t i = 0; i <= set; ++i) // sets have no gaps
 		{
 			Document& to = primitive["attributes"][setName(static_cast<int>(i))];
@@ -249,6 +303,14 @@ private:
 		}
 		primitive["mode"] = 4U;
 		std::size_t at = number; // further pages go behind the mesh's primitives
+		if (!charts.rest.empty())
+		{
+			Document& rest = m_editor.primitiveOf(mesh, number);
+			rest["mode"] = 4U;
+			rest["indices"] = indicesOf(charts.rest, place.count <= kShort);
+			at = m_editor.items("meshes")[mesh]["primitives"].size();
+			m_parts.push_back({place.node, {}, number, place.count, 0, {}, place.mesh, false, charts.rest_vertices, {}});
+		}
 		for (std::size_t page = 0; page < charts.pages.size(); ++page)
 		{
 			const std::vector<uint32_t>& indices = charts.pages[page];
@@ -256,41 +318,43 @@ private:
 			{
 				continue;
 			}
-			const auto [accessor, is_new_list] = m_indices.try_emplace({unit.mesh, number, indices}, 0);
-			if (is_new_list)
-			{
-				const std::string bytes(reinterpret_cast<const char*>(indices.data()), 4 * indices.size());
-				accessor->second = m_editor.addAccessor("SCALAR", 5125, indices.size(), bytes, true);
-			}
-			primitive["indices"] = accessor->second;
+			primitive["indices"] = indicesOf(indices, alone && charts.copied.size() <= kShort);
 			primitive["material"] = textured(before, page, m_bake.pages[page], set);
 			Document& all = m_editor.items("meshes")[mesh]["primitives"];
 			all[at] = primitive;
+			if (alone)
+			{
+				m_parts.push_back(
+					{place.node, {}, at, charts.copied.size(), 0, {}, place.mesh, false, charts.page_vertices[page], {}});
+			}
 			at = all.size();
 		}
 	}
 
 	GltfEditor& m_editor;
 	const GltfBake& m_bake;
-	std::size_t m_sampler = kNoNumber;                                      // of the textures
-	std::map<std::pair<const char*, std::size_t>, std::size_t> m_textures;  // by picture and metallic-roughness texture
-	std::map<std::pair<std::size_t, std::size_t>, std::size_t> m_materials; // by the one before and the page
-	std::set<std::size_t> m_taken;                                          // materials that got a page, or stay as they are
-	std::map<std::pair<std::size_t, std::size_t>, Document> m_split;        // primitives with added vertices
-	std::map<std::tuple<std::size_t, std::size_t, std::vector<uint32_t>>, std::size_t> m_indices; // accessors
+	std::size_t m_sampler = kNoNumber;                                       // of the textures
+	std::map<std::pair<const char*, std::size_t>, std::size_t> m_textures;   // by picture and metallic-roughness texture
+	std::map<std::pair<std::size_t, std::size_t>, std::size_t> m_materials;  // by the one before and the page
+	std::set<std::size_t> m_taken;                                           // materials that got a page, or stay as they are
+	std::map<std::pair<std::size_t, std::size_t>, Document> m_split;         // primitives with added vertices
+	std::map<std::pair<bool, std::vector<uint32_t>>, std::size_t> m_indices; // accessors
+	std::vector<GltfPlace>& m_parts;
 };
 
 } // namespace
 
 void checkTextures(GltfEditor& editor, const GltfBake& bake, const std::vector<MeshUnit>& units)
 {
-	TextureBaker(editor, bake).check(units);
+	std::vector<GltfPlace> none;
+	TextureBaker(editor, bake, none).check(units);
 }
 
 std::size_t addTextures(GltfEditor& editor, const GltfBake& bake, std::span<const GltfPlace> places,
-						const std::vector<MeshUnit>& units, const std::map<std::size_t, int>& set_of_material)
+						const std::vector<MeshUnit>& units, const std::map<std::size_t, int>& set_of_material,
+						std::vector<GltfPlace>& parts)
 {
-	return TextureBaker(editor, bake).add(places, units, set_of_material);
+	return TextureBaker(editor, bake, parts).add(places, units, set_of_material);
 }
 
 } // namespace nook

@@ -58,6 +58,7 @@ struct Material
 	double mean_alpha = 1.0; // ᾱ of AOV eq. 5: the mean of factor × mask over the texture; 1 if opaque
 	double coverage = 1.0;   // fraction of the texture that passes the cut-off; 1 if opaque
 	bool two_sided = false;
+	int occlusion = -1;              // image of a glTF's occlusionTexture
 	std::vector<std::string> extras; // "key=value", for choosing parts
 
 	// Base colour, of formats other than glTF.

@@ -76,6 +76,8 @@ struct BakedValues
 	BakedKind kind = BakedKind::visibility;
 	std::vector<float> front; // one per vertex of the level; NaN for vertices without a value
 	std::vector<float> back;  // the clockwise side; same as the front if the file has only one
+	std::vector<Mask> pages;  // textures that multiply the front, by Material::occlusion; empty: none
+	std::vector<glm::vec2> uvs;
 };
 
 // `level`: the result of loadLevel() for the same file. Throws Error (invalid_input) if the file has no values or one is out of

@@ -10,6 +10,7 @@
 #include "core/words.h"
 #include "core/work_units.h"
 #include "scene/builtin.h"
+#include "scene/gltf_edit.h"
 #include "scene/level_glb.h"
 #include "scene/load_parts.h"
 
@@ -553,6 +554,33 @@ std::vector<GltfPlace> loadPlaces(const std::string& name, const LoadSettings& s
 	return std::move(source.places);
 }
 
+namespace
+{
+
+// Adds the textures that bakeInto() gave materials.
+void addPages(const std::string& path, const Level& level, const RunSettings& run, BakedValues& baked)
+{
+	GltfFile file = openGltf(path);
+	for (const Material& material : level.material_list)
+	{
+		const auto image = static_cast<std::size_t>(std::max(material.occlusion, 0));
+		const JsonValue item = material.occlusion < 0 ? file.root() : file.root().item("images", image);
+		if (item.text("name") != kBakedImage || !item.has("bufferView") ||
+			(image < baked.pages.size() && baked.pages[image].width_px > 0))
+		{
+			continue;
+		}
+		const std::string bytes(viewBytes(file, static_cast<std::size_t>(item.wholeNeeded("bufferView", UINT32_MAX))));
+		std::vector<AlphaImage> read = decodeAlphas({{"visibility.png", "", bytes, MaskChannel::red}}, path);
+		baked.pages.resize(std::max(baked.pages.size(), image + 1));
+		baked.pages[image] = {"", read[0].width_px, read[0].height_px, Wrap::clamp, Wrap::clamp, std::move(read[0].alpha)};
+	}
+	baked.uvs = secondSet(path, {}, level, kOcclusionSet, run);
+	baked.uvs.empty() ? baked.pages.clear() : void();
+}
+
+} // namespace
+
 BakedValues loadBakedValues(const std::string& path, const Level& level, const RunSettings& run)
 {
 	const ProgressCounter stage(run.progress, "baked values");
@@ -579,6 +607,10 @@ BakedValues loadBakedValues(const std::string& path, const Level& level, const R
 			}
 			baked.front.push_back(value.x);
 			baked.back.push_back(value.y);
+		}
+		if (const nlohmann::ordered_json record = bakeRecordOf(path); record.is_object() && numberIn(record, "pages", 0) > 0)
+		{
+			addPages(path, level, run, baked);
 		}
 		return baked;
 	}

@@ -58,10 +58,11 @@ struct PlacedPicture : MaskSource
 
 struct SourceMaterial
 {
-	Material material;         // complete except for mask, mean_alpha and coverage
-	int mask = -1;             // index of a MaskSource
-	bool transmits = false;    // light passes through what is present
-	uint32_t uv_set = 0;       // texture coordinate set of the mask
+	Material material;      // complete except for mask, mean_alpha and coverage
+	int mask = -1;          // index of a MaskSource
+	bool transmits = false; // light passes through what is present
+	uint32_t uv_set = 0;    // texture coordinate set of the mask
+	uint32_t occlusion_set = 0;
 	glm::dmat3 uv_of_set{1.0}; // KHR_texture_transform, MTL's -s and -o: from the set's (u, v, 1) to the mask's
 };
 
@@ -161,6 +162,9 @@ void nameCameras(std::vector<LevelCamera>& cameras);
 inline constexpr std::array<uint32_t, 3> kBakedSets{0xfffffffdU, 0xfffffffeU, 0xffffffffU};
 // Likewise: no coordinates, but LevelSource::places.
 inline constexpr uint32_t kPlacesSet = 0xfffffffcU;
+
+// Likewise, for the set that each material's occlusionTexture uses.
+inline constexpr uint32_t kOcclusionSet = 0xfffffffbU;
 inline constexpr std::array<std::string_view, 3> kBakedNames{"_VISIBILITY", "_DIFFERENCE", "_DIFFERENCE_MASK"};
 
 // Reads a checked glTF file: appends triangles to `level`; returns materials, encoded masks, cameras and findings. `second_set`:

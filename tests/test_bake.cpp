@@ -360,9 +360,9 @@ TEST_CASE("bake: what is baked beside something is the difference to it", "[bake
 	const VertexBake plain = bakeVertices(tracer, settings, {});
 	const BakeCheck alone = checkBake(tracer, loaded.level, plain, settings, 500, {});
 	CHECK(alone.rmse_without == 0.0);
-	settings.base = [](glm::dvec3, glm::dvec3)
+	settings.base = [](std::span<const ReferencePoint> points)
 	{
-		return 0.75;
+		return std::vector<double>(points.size(), 0.75);
 	};
 	const VertexBake difference = bakeVertices(tracer, settings, {});
 	for (std::size_t v = 0; v < plain.visibility.size(); ++v)

@@ -378,6 +378,7 @@ TEST_CASE("trim: a receiver beyond the reach gets nothing, one within gets what 
 		const VolumeSet cut = squareOf(0.375F, 0.1875F, two_sided); // 0.75 m up, half as far sideways
 		const VolumeEvaluator of_whole(whole, {});
 		const VolumeEvaluator of_cut(cut, {});
+		std::vector<VolumeShare> shares;
 		for (int i = 0; i < 20000; ++i)
 		{
 			const glm::dvec3 at(4.0 * random.uniform() - 1.5, 4.0 * random.uniform() - 1.5, 4.0 * random.uniform() - 2.0);
@@ -390,9 +391,14 @@ TEST_CASE("trim: a receiver beyond the reach gets nothing, one within gets what 
 			}
 			const double expected = height_m < 0.75 && side_m < 0.375 ? of_whole.occlusion(at, toward) : 0.0;
 			REQUIRE(of_cut.occlusion(at, toward) == expected);
-			const VolumeReach needed = reachFor(cut, cut.occluders.polygons[0], at);
-			REQUIRE(static_cast<double>(needed.height) == Approx(height_m / 2.0).margin(1e-7));
-			REQUIRE(static_cast<double>(needed.side) == Approx(side_m / 2.0).margin(1e-7));
+			const VolumeReceiver receiver{at, toward};
+			of_whole.shares({&receiver, 1}, {&shares, 1});
+			for (const VolumeShare& share : shares)
+			{
+				const double lifted_m = height_m < 2e-4 ? 2.1e-4 : 2e-7; // points in the plane are lifted out of it
+				REQUIRE(static_cast<double>(share.height_m) == Approx(height_m).margin(lifted_m));
+				REQUIRE(static_cast<double>(share.outside_m) == Approx(side_m).margin(2e-7));
+			}
 			within += expected > 0.0 ? 1U : 0U;
 			beyond += expected == 0.0 && of_whole.occlusion(at, toward) > 0.0 ? 1U : 0U;
 			// Masks are covered by the same polygons.

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace nook
@@ -58,7 +59,7 @@ struct BakeSettings
 
 	// Visibility that another method draws at a point with a unit normal: the bake then stores the difference from it, −1 to 1.
 	// Requires BakeFit::surface without bent normals. Called from any thread.
-	std::function<double(glm::dvec3 position, glm::dvec3 normal)> base{};
+	std::function<std::vector<double>(std::span<const ReferencePoint>)> base{};
 };
 
 // Errors of the interpolated values against rays at new points of the surface.

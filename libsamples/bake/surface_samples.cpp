@@ -3,11 +3,13 @@
 // E. Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
 #include "bake/surface_samples.h"
 
+#include "core/lists.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/work_units.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <numeric>
@@ -98,6 +100,46 @@ void findBuried(const Tracer& tracer, const Level& level, std::span<SurfaceSampl
 	runStage({"inside", (samples.size() + kChunk - 1) / kChunk,
 			  [&](std::size_t unit) { return kRays * static_cast<double>(chunk(unit).size()); }, compute, pass},
 			 withoutProgress(run));
+}
+
+// Makes the samples' values differences to `base`. Hardly anybody sees samples inside matter, so some of them do without an
+// evaluation: they take the mean of the open samples around their corners, or become black where no ray leaves.
+template <class PointAt>
+void takeFromBase(const Level& level, std::span<SurfaceSample> samples, const PointAt& pointAt, const BakeSettings& settings)
+{
+	const std::vector<std::size_t> open = indicesWhere(samples.size(), [&](std::size_t i) { return !samples[i].buried; });
+	const std::vector<double> base = settings.base(mapped(open, pointAt));
+	std::vector<std::array<glm::dvec2, 2>> sums(level.positions.size()); // by side of each vertex: of the base, and number
+	const auto cornerOf = [&](std::size_t i, int k) -> glm::dvec2&
+	{
+		return sums[level.triangles[samples[i].triangle][k]][samples[i].back ? 1 : 0];
+	};
+	for (std::size_t i = 0; i < open.size(); ++i)
+	{
+		samples[open[i]].visibility -= static_cast<float>(base[i]);
+		for (int k = 0; k < 3; ++k)
+		{
+			cornerOf(open[i], k) += glm::dvec2(base[i], 1.0);
+		}
+	}
+	std::vector<std::size_t> alone;
+	for (std::size_t i = 0; i < samples.size(); ++i)
+	{
+		if (samples[i].buried)
+		{
+			const glm::dvec2 sum = cornerOf(i, 0) + cornerOf(i, 1) + cornerOf(i, 2);
+			samples[i].visibility -= static_cast<float>(sum.y > 0.0 ? sum.x / sum.y : samples[i].shut ? 1.0 : 0.0);
+			if (!(sum.y > 0.0 || samples[i].shut))
+			{
+				alone.push_back(i);
+			}
+		}
+	}
+	const std::vector<double> rest = settings.base(mapped(alone, pointAt));
+	for (std::size_t i = 0; i < alone.size(); ++i)
+	{
+		samples[alone[i]].visibility -= static_cast<float>(rest[i]);
+	}
 }
 
 } // namespace
@@ -258,13 +300,12 @@ void traceSamples(const Tracer& tracer, const Level& level, std::size_t count, c
 			block[i].standard_error = static_cast<float>(values[i].standard_error);
 			block[i].bent = values[i].bent;
 			block[i].shut = values[i].visibility <= kShut;
-			if (settings.base)
-			{
-				const ReferencePoint point = pointAt(i);
-				block[i].visibility -= static_cast<float>(settings.base(point.position, point.normal));
-			}
 		};
 		parallelFor(isShare(run) ? 0 : block.size(), run.threads, take); // nobody reads them in a share
+		if (settings.base && !isShare(run))
+		{
+			takeFromBase(level, block, pointAt, settings);
+		}
 		progress.finish(block.size());
 	}
 }

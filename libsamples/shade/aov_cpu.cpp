@@ -58,7 +58,9 @@ public:
 			held += mask.volumes;
 			return static_cast<float>(mask.visibility);
 		}
-		const VolumeSum sum = m_evaluator.sum(position, normal, error_m);
+		VolumeSum sum;
+		const VolumeReceiver receiver{position, normal, error_m};
+		m_evaluator.sums({&receiver, 1}, {&sum, 1});
 		held += sum.volumes;
 		const double occlusion = m_settings.compensate ? m_volumes.compensation.at(sum.occlusion) : std::min(sum.occlusion, 1.0);
 		return static_cast<float>(1.0 - occlusion);

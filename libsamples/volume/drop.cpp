@@ -96,7 +96,11 @@ struct DropSearch
 	}
 
 	// Calls visit(FoundReceiver) for each side of a triangle that reaches into the region and has the polygon above its plane,
-	// until it returns false. Returns whether any triangle reaches into the region.
+	// until it returns false; returns false then. Sets `any` if the triangle reaches into the region.
+	template <class Visit>
+	bool forTriangle(std::span<const glm::dvec3> of, const VolumeRegion& region, uint32_t triangle, bool& any, Visit&& visit) const;
+
+	// Likewise for all triangles. Returns whether any triangle reaches into the region.
 	template <class Visit> bool forReceivers(std::size_t polygon, const VolumeRegion& region, Visit&& visit) const;
 };
 
@@ -109,40 +113,43 @@ struct FoundReceiver
 	double rise_m = 0.0; // height of the polygon above it (region.h)
 };
 
-template <class Visit> bool DropSearch::forReceivers(std::size_t polygon, const VolumeRegion& region, Visit&& visit) const
+template <class Visit>
+bool DropSearch::forTriangle(std::span<const glm::dvec3> of, const VolumeRegion& region, uint32_t triangle, bool& any,
+							 Visit&& visit) const
 {
 	const Level& level = tracer.level();
+	const glm::uvec3 corner = level.triangles[triangle];
+	if (!reaches(region, {level.positions[corner.x], level.positions[corner.y], level.positions[corner.z]}))
+	{
+		return true;
+	}
+	any = true;
+	FoundReceiver here;
+	here.triangle = triangle;
+	for (here.side = 0; here.side < 2; ++here.side)
+	{
+		const auto bit = static_cast<uint8_t>(1U << here.side);
+		if (!receiverSide(level, triangle, static_cast<int>(here.side), settings.smooth_normals, here.receiver))
+		{
+			continue;
+		}
+		here.rise_m = riseOf(of, here.receiver);
+		here.verdict = (sides.seen[triangle] & bit) != 0      ? SideVerdict::needed
+					   : (sides.outside[triangle] & bit) != 0 ? SideVerdict::unseen
+															  : SideVerdict::inside;
+		if (here.rise_m > kRise * distance_m && !visit(std::as_const(here)))
+		{
+			return false;
+		}
+	}
+	return true;
+}
+
+template <class Visit> bool DropSearch::forReceivers(std::size_t polygon, const VolumeRegion& region, Visit&& visit) const
+{
 	const std::span<const glm::dvec3> of = corners(polygon);
 	bool any = false;
-	FoundReceiver here;
-	tree->visit(region.box, region.planes(),
-				[&](uint32_t triangle)
-				{
-					const glm::uvec3 corner = level.triangles[triangle];
-					if (!reaches(region, {level.positions[corner.x], level.positions[corner.y], level.positions[corner.z]}))
-					{
-						return true;
-					}
-					any = true;
-					here.triangle = triangle;
-					for (here.side = 0; here.side < 2; ++here.side)
-					{
-						const auto bit = static_cast<uint8_t>(1U << here.side);
-						if (!receiverSide(level, triangle, static_cast<int>(here.side), settings.smooth_normals, here.receiver))
-						{
-							continue;
-						}
-						here.rise_m = riseOf(of, here.receiver);
-						here.verdict = (sides.seen[triangle] & bit) != 0      ? SideVerdict::needed
-									   : (sides.outside[triangle] & bit) != 0 ? SideVerdict::unseen
-																			  : SideVerdict::inside;
-						if (here.rise_m > kRise * distance_m && !visit(std::as_const(here)))
-						{
-							return false;
-						}
-					}
-					return true;
-				});
+	tree->visit(region.box, region.planes(), [&](uint32_t triangle) { return forTriangle(of, region, triangle, any, visit); });
 	return any;
 }
 
@@ -311,6 +318,8 @@ struct Loss
 // `below`.
 double lossesOf(const DropSearch& search, std::size_t polygon, std::vector<Loss>& losses)
 {
+	thread_local uint32_t strongest = 0; // the triangle that lost most by the last polygon: often a neighbour
+	strongest = std::min(strongest, static_cast<uint32_t>(search.sides.there.size() - 1)); // of another level
 	double most = 0.0;
 	for (unsigned side = 0; side < 2; ++side)
 	{
@@ -319,6 +328,8 @@ double lossesOf(const DropSearch& search, std::size_t polygon, std::vector<Loss>
 			continue;
 		}
 		const VolumeRegion region = search.region(polygon, side);
+		const std::size_t before = losses.size();
+		const double most_before = most;
 		const auto alpha = static_cast<double>(search.occluders.polygons[polygon].alpha);
 		const auto add = [&](const FoundReceiver& found)
 		{
@@ -327,13 +338,21 @@ double lossesOf(const DropSearch& search, std::size_t polygon, std::vector<Loss>
 					? 0.0
 					: greatestShare(region, search.corners(polygon), search.areas[polygon], alpha, found.receiver, found.rise_m);
 			most = std::max(most, share);
+			strongest = share > search.settings.below ? found.triangle : strongest;
 			if (share > 0.0)
 			{
 				losses.push_back({2 * found.triangle + found.side, static_cast<float>(share * (1.0 + 0x1p-22))});
 			}
 			return most <= search.settings.below;
 		};
-		search.forReceivers(polygon, region, add);
+		bool any = false;
+		const bool goes_on = search.forTriangle(search.corners(polygon), region, strongest, any, add);
+		losses.resize(before); // only a short cut
+		most = goes_on ? most_before : most;
+		if (goes_on)
+		{
+			search.forReceivers(polygon, region, add);
+		}
 		if (most > search.settings.below)
 		{
 			losses.clear();

@@ -4,11 +4,13 @@
 #include "volume/evaluate.h"
 
 #include "core/error.h"
+#include "core/math.h"
 #include "core/parallel.h"
 #include "core/round.h"
 #include "methods/aov_text.h"
 #include "methods/volume_kernels.h"
 #include "scene/tracer_tree.h"
+#include "volume/receivers.h"
 #include "volume/volume_glb.h"
 #include "volume/volumes.h"
 
@@ -25,12 +27,151 @@
 namespace nook
 {
 
+namespace
+{
+
+// Four receivers or four edges at once, in vector types of GCC and Clang.
+using Floats = float __attribute__((vector_size(16)));
+using Ints = int32_t __attribute__((vector_size(16)));
+using Doubles = double __attribute__((vector_size(32)));
+
+struct Vectors
+{
+	Floats x;
+	Floats y;
+	Floats z;
+};
+
+Floats dotOf(const Vectors& a, const Vectors& b)
+{
+	return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+Vectors operator*(const Vectors& a, const Floats& b)
+{
+	return {a.x * b, a.y * b, a.z * b};
+}
+
+Vectors crossOf(const Vectors& a, const Vectors& b)
+{
+	return {a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
+}
+
+Vectors allOf(glm::vec3 v)
+{
+	return {Floats{} + v.x, Floats{} + v.y, Floats{} + v.z};
+}
+
+Floats magnitudeOf(const Floats& v)
+{
+	return v < 0.0F ? -v : v;
+}
+
+bool anyOf(const Ints& lanes)
+{
+	const auto halves = bitsAs<std::array<uint64_t, 2>>(lanes);
+	return (halves[0] | halves[1]) != 0;
+}
+
+// nookUnit()
+Floats unitOf(const Vectors& a)
+{
+	const Floats square = dotOf(a, a) > 1e-30F ? dotOf(a, a) : Floats{} + 1e-30F;
+	return 1.0F / Floats{std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2]), std::sqrt(square[3])};
+}
+
+// The lanes of both in a row, without the first.
+Floats nextOf(const Floats& a, const Floats& b)
+{
+	return Floats{a[1], a[2], a[3], b[0]};
+}
+
+Vectors nextOf(const Vectors& a, const Vectors& b)
+{
+	return {nextOf(a.x, b.x), nextOf(a.y, b.y), nextOf(a.z, b.z)};
+}
+
+void setLane(Vectors& to, std::size_t lane, glm::vec3 v)
+{
+	to.x[lane] = v.x;
+	to.y[lane] = v.y;
+	to.z[lane] = v.z;
+}
+
+glm::vec3 laneOf(const Vectors& a, std::size_t lane)
+{
+	return {a.x[lane], a.y[lane], a.z[lane]};
+}
+
+Vectors chosen(const Ints& which, const Vectors& a, const Vectors& b)
+{
+	return {which ? a.x : b.x, which ? a.y : b.y, which ? a.z : b.z};
+}
+
+constexpr std::size_t kMostFours = kMaxOccluderCorners / 4;
+
+// Four corners of a polygon, and for each the unit vector in its plane that points into it from the edge to the next corner.
+// The first corner follows the last one, as often as it takes to fill the four; such edges have no length and the vector 0.
+struct Four
+{
+	std::array<Doubles, 3> corners; // by axis
+	Vectors inward;
+};
+
+// A polygon seen from afar: a point with an area.
+struct Spot
+{
+	glm::vec3 centre{0.0F}; // of the area, relative to the first corner
+	float area = 0.0F;      // over π
+	float far = 0.0F;       // squared distance from which it does
+};
+
+// From this many radii on, the integrand of the form factor is flat enough: it varies by the square, and a triangle's corners are
+// twice as far from its centre as the root mean square of its points.
+constexpr double kFar = 7.0;
+
+// A polygon whose volume contains the receiver, for masks.
+struct Held
+{
+	uint32_t index = 0;
+	glm::vec3 front{0.0F};
+	float height = 0.0F; // of the receiver above the polygon, m
+	std::size_t fours = 0;
+	std::array<Vectors, kMostFours> from; // corners relative to the receiver
+	std::array<Vectors, kMostFours> to;   // the next ones
+};
+
+// Up to four receivers close to one another; the last one fills unused lanes.
+struct Group
+{
+	std::size_t count = 0;
+	glm::dvec3 origin{0.0};
+	Vectors at; // relative to the origin
+	Vectors normals;
+	Floats bias;
+	float radius = 0.0F; // from the origin, with the bias
+};
+
+// What a polygon does to the receivers of a group.
+struct Terms
+{
+	Ints held; // −1: its volume contains the receiver
+	Floats height;
+	Floats outside; // beyond its edges, ≥ 0
+	Floats share;   // g · form factor
+};
+
+} // namespace
+
 struct VolumeEvaluator::Data
 {
 	const VolumeSet& set;
 	glm::dvec3 centre{0.0};
 	float grown = 0.0F; // margin in metres, beyond rounding to 32 bits
 	std::vector<glm::vec3> fronts;
+	std::vector<Four> fours;
+	std::vector<Spot> spots;
+	std::vector<uint32_t> first_four; // by polygon, and the end
 	std::vector<glm::dvec3>
 		rings;                    // extended outlines of the volumes in their planes, parallel to the corners; for clamped polygons
 	std::vector<uint8_t> clamped; // clamped by AOV's 2δ: some points with a falloff > 0 lie outside
@@ -57,20 +198,33 @@ struct VolumeEvaluator::Data
 	void build(const RunSettings& run);
 	bool holds(const Occluder& polygon, glm::dvec3 front, glm::dvec3 position) const;
 	const std::vector<uint32_t>& candidatesAt(glm::vec3 at, float radius) const;
-	template <class Within, class Visit>
-	uint32_t visit(glm::dvec3 position, glm::vec3 normal, double bias_m, const Within& within, const Visit& visit) const;
-	template <class Use> uint32_t visitShares(glm::dvec3 position, glm::vec3 normal, double bias_m, const Use& use) const;
+	float biasOf(double bias_m) const;
+	Group groupOf(std::span<const VolumeReceiver> receivers) const;
+	bool reach(Held& held, glm::dvec3 position, glm::vec3 normal, float bias) const;
+	bool termsOf(uint32_t index, const Group& group, bool roughly, Terms& terms) const;
+	template <class Use> void visitShares(std::span<const VolumeReceiver> receivers, bool roughly, const Use& use) const;
 };
 
 namespace
 {
 
-// Distances along the axes, not Euclidean.
-bool isNear(const RTCBounds& box, glm::vec3 at, float radius)
+// A cube around a point, as a box of Embree.
+struct Near
 {
-	return at.x >= box.lower_x - radius && at.x <= box.upper_x + radius && at.y >= box.lower_y - radius &&
-		   at.y <= box.upper_y + radius && at.z >= box.lower_z - radius && at.z <= box.upper_z + radius;
-}
+	Floats low;
+	Floats high;
+
+	Near(glm::vec3 at, float radius)
+		: low{at.x - radius, at.y - radius, at.z - radius, 0.0F}, high{at.x + radius, at.y + radius, at.z + radius, 0.0F}
+	{
+	}
+
+	bool meets(const RTCBounds& box) const
+	{
+		const auto sides = bitsAs<std::array<Floats, 2>>(box);
+		return !anyOf((high < sides[0]) | (low > sides[1]));
+	}
+};
 
 // Volumes near the last point of a thread, ascending. The next pixel is usually near it.
 struct Candidates
@@ -86,49 +240,11 @@ struct Candidates
 bool collect(RTCPointQueryFunctionArguments* arguments)
 {
 	Candidates& candidates = *static_cast<Candidates*>(arguments->userPtr);
-	if (isNear((*candidates.boxes)[arguments->primID], candidates.at, candidates.radius))
+	if (Near(candidates.at, candidates.radius).meets((*candidates.boxes)[arguments->primID]))
 	{
 		candidates.found.push_back(arguments->primID);
 	}
 	return false;
-}
-
-// Ascending. Long lists use radix sort with 11-bit digits: two to three times as fast as a comparison sort.
-void sortIndices(std::vector<uint32_t>& indices, std::size_t below)
-{
-	constexpr std::size_t kFew = 192;
-	constexpr unsigned kBits = 11;
-	if (indices.size() < kFew)
-	{
-		std::sort(indices.begin(), indices.end());
-		return;
-	}
-	thread_local std::vector<uint32_t> other;
-	other.resize(indices.size());
-	for (unsigned shift = 0; shift < 32 && (below >> shift) != 0; shift += kBits)
-	{
-		std::array<uint32_t, std::size_t{1} << kBits> ends{};
-		const auto digitOf = [shift](uint32_t index)
-		{
-			return (index >> shift) & ((1U << kBits) - 1U);
-		};
-		for (const uint32_t index : indices)
-		{
-			ends[digitOf(index)] += 1;
-		}
-		uint32_t end = 0;
-		for (uint32_t& count : ends)
-		{
-			const uint32_t begin = end;
-			end += count;
-			count = begin;
-		}
-		for (const uint32_t index : indices)
-		{
-			other[ends[digitOf(index)]++] = index;
-		}
-		indices.swap(other);
-	}
 }
 
 void boundsOfBox(const RTCBoundsFunctionArguments* arguments)
@@ -171,6 +287,33 @@ void VolumeEvaluator::Data::shape(std::size_t index)
 		clamped[index] |= !set.exact_bounds && across > (2.0 - 1e-9) * shape.distance_m * shape.side_share ? 1 : 0;
 		rings[polygon.first_corner + i] = used[i];
 	}
+	glm::dvec3 mean(0.0);
+	double area = 0.0;
+	for (std::size_t i = 2; i < corners.size(); ++i)
+	{
+		const double part = 0.5 * glm::length(glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]));
+		mean += part / 3.0 * (corners[i - 1] - corners[0] + corners[i] - corners[0]);
+		area += part;
+	}
+	mean = area > 0.0 ? mean / area : mean;
+	double far = 0.0;
+	for (const glm::dvec3& corner : corners)
+	{
+		far = std::max(far, kFar * kFar * glm::dot(corner - corners[0] - mean, corner - corners[0] - mean));
+	}
+	spots[index] = {glm::vec3(mean), static_cast<float>(area / kPi), static_cast<float>(far)};
+	for (std::size_t i = 0; i < 4 * (first_four[index + 1] - first_four[index]); ++i)
+	{
+		Four& four = fours[first_four[index] + i / 4];
+		const glm::dvec3 from = corners[i < corners.size() ? i : 0];
+		const glm::dvec3 to = corners[i + 1 < corners.size() ? i + 1 : 0];
+		const glm::vec3 inward = from == to ? glm::vec3(0.0F) : glm::vec3(glm::normalize(glm::cross(front, to - from)));
+		for (int axis = 0; axis < 3; ++axis)
+		{
+			four.corners[static_cast<std::size_t>(axis)][i % 4] = from[axis];
+		}
+		setLane(four.inward, i % 4, inward);
+	}
 	const glm::vec3 low = glm::vec3(box.least - centre) - grown;
 	const glm::vec3 high = glm::vec3(box.most - centre) + grown;
 	boxes[index] = {low.x, low.y, low.z, 0.0F, high.x, high.y, high.z, 0.0F};
@@ -206,7 +349,14 @@ VolumeEvaluator::VolumeEvaluator(const VolumeSet& volumes, const RunSettings& ru
 	data.fronts.resize(count);
 	data.clamped.resize(count);
 	data.boxes.resize(count);
+	data.spots.resize(count);
 	data.rings.resize(volumes.occluders.corners.size());
+	data.first_four.push_back(0);
+	for (const Occluder& polygon : volumes.occluders.polygons)
+	{
+		data.first_four.push_back(data.first_four.back() + (polygon.corner_count + 3) / 4);
+	}
+	data.fours.resize(data.first_four.back());
 	inBlocks(count, 1024, run, nullptr, [&data](std::size_t i) { data.shape(i); });
 	data.build(run);
 }
@@ -242,129 +392,312 @@ const std::vector<uint32_t>& VolumeEvaluator::Data::candidatesAt(glm::vec3 at, f
 		rtcInitPointQueryContext(&context);
 		RTCPointQuery query{at.x, at.y, at.z, 0.0F, 1.7320509F * candidates.radius};
 		rtcPointQuery(scene, &query, &context, collect, &candidates);
-		sortIndices(candidates.found, set.occluders.polygons.size());
+		std::sort(candidates.found.begin(), candidates.found.end());
 	}
 	return candidates.found;
 }
 
-// Calls visit(index, kernels, front, height) for all volumes that contain the point, in order; returns how many. within() with the
-// same arguments says whether a point at that height has a falloff above 0.
-template <class Within, class Visit>
-uint32_t VolumeEvaluator::Data::visit(glm::dvec3 position, glm::vec3 normal, double bias_m, const Within& within,
-									  const Visit& visit) const
+// Fills `held` for the polygon of its index; returns false if its volume does not contain the point.
+bool VolumeEvaluator::Data::reach(Held& held, glm::dvec3 position, glm::vec3 normal, float bias) const
 {
-	const glm::vec3 at(position - centre);
-	const auto bias = static_cast<float>(std::max({bias_m, kVolumeBias * set.distance_m, set.plane_error_m}));
-	// A point that close behind the plane of one side may be lifted into the volume.
-	const float radius = grown + bias;
-	const auto reach = static_cast<float>(set.distance_m);
-	std::array<glm::vec3, kMaxOccluderCorners> corners;
+	const Occluder& polygon = set.occluders.polygons[held.index];
+	const Four* const shape = &fours[first_four[held.index]];
+	held.front = fronts[held.index];
+	const float two_sided = polygon.two_sided ? 1.0F : 0.0F;
 	volume_kernels::Kernels kernels;
-	uint32_t count = 0;
-	for (const uint32_t index : candidatesAt(at, radius))
+	glm::vec3 corner(glm::dvec3(shape->corners[0][0], shape->corners[1][0], shape->corners[2][0]) - position);
+	kernels.corners = std::span(&corner, 1);
+	const float lift = kernels.nookLift(kernels.nookHeight(held.front), two_sided, bias, glm::dot(normal, held.front));
+	corner -= lift * held.front;
+	held.height = kernels.nookHeight(held.front);
+	const auto reach = static_cast<float>(set.distance_m);
+	if (!kernels.nookReaches(held.height, two_sided, reach * polygon.reach, bias))
 	{
-		if (!isNear(boxes[index], at, radius))
+		return false;
+	}
+	const float scale = 1.0F / reach;
+	const float least = 1.0F - polygon.side_reach;
+	held.fours = first_four[held.index + 1] - first_four[held.index];
+	for (std::size_t i = 0; i < held.fours; ++i)
+	{
+		Vectors& from = held.from[i];
+		from.x = __builtin_convertvector(shape[i].corners[0] - position.x, Floats) - lift * held.front.x;
+		from.y = __builtin_convertvector(shape[i].corners[1] - position.y, Floats) - lift * held.front.y;
+		from.z = __builtin_convertvector(shape[i].corners[2] - position.z, Floats) - lift * held.front.z;
+		const Floats outside = dotOf(from, shape[i].inward); // AOV eq. 7
+		const Floats side = 1.0F - outside * scale;
+		if (anyOf((side <= 0.0F) | (side < least)))
 		{
-			continue;
-		}
-		const Occluder& polygon = set.occluders.polygons[index];
-		const std::span<const glm::dvec3> of = set.occluders.cornersOf(polygon);
-		const glm::vec3 front = fronts[index];
-		const float two_sided = polygon.two_sided ? 1.0F : 0.0F;
-		corners[0] = glm::vec3(of[0] - position);
-		kernels.corners = std::span(corners).first(of.size());
-		const float lift = kernels.nookLift(kernels.nookHeight(front), two_sided, bias, glm::dot(normal, front));
-		corners[0] -= lift * front;
-		const float height = kernels.nookHeight(front);
-		if (!kernels.nookReaches(height, two_sided, reach * polygon.reach, bias))
-		{
-			continue;
-		}
-		for (std::size_t i = 1; i < of.size(); ++i)
-		{
-			corners[i] = glm::vec3(of[i] - position) - lift * front;
-		}
-		if (within(index, kernels, front, height) && (clamped[index] == 0 || holds(polygon, glm::dvec3(front), position)))
-		{
-			count += 1;
-			visit(index, kernels, front, height);
+			return false;
 		}
 	}
-	return count;
+	for (std::size_t i = 0; i < held.fours; ++i)
+	{
+		held.to[i] = nextOf(held.from[i], held.from[i + 1 < held.fours ? i + 1 : 0]);
+	}
+	return clamped[held.index] == 0 || holds(polygon, glm::dvec3(held.front), position);
 }
 
-// Calls use(polygon index, g · form factor) for all volumes that contain the point, in order; returns how many.
+float VolumeEvaluator::Data::biasOf(double bias_m) const
+{
+	return static_cast<float>(std::max({bias_m, kVolumeBias * set.distance_m, set.plane_error_m}));
+}
+
+namespace
+{
+
+// nookArc()
+Floats arcOf(const Floats& x)
+{
+	const Floats p = 0.522759580F + x * (-0.345475831F + x * (0.152677448F - x * 0.0317200786F));
+	return 1.57079595F + x * (-0.999943104F + x * (0.783984789F + x * (-0.653083218F + x * p)));
+}
+
+// nookTurn()
+Floats turnOf(const Vectors& a, const Vectors& b, const Vectors& axis, const Floats& side)
+{
+	const Floats sine = dotOf(crossOf(a, b), axis) * side;
+	const Floats cosine = dotOf(a, b);
+	const Floats arc = arcOf(magnitudeOf(cosine));
+	return cosine < 0.0F ? 3.14159265F - arc * magnitudeOf(sine) : arc * sine;
+}
+
+// nookFormFactor() for the receivers among `held`. Edges that appear nearly as long as half a turn take more digits, and rounding
+// may cut a polygon more than once: the kernel itself evaluates such receivers.
+Floats formFactors(std::span<const Vectors> corners, const Vectors& n, const Floats& side, const Ints& held)
+{
+	Vectors from = corners.back() * unitOf(corners.back());
+	Floats ha = dotOf(from, n);
+	Floats edges{};
+	Ints exits{}; // −1 each
+	Ints entries{};
+	Ints hard{};
+	Vectors exit{};
+	Vectors entry{};
+	for (const Vectors& corner : corners)
+	{
+		const Vectors to = corner * unitOf(corner);
+		const Floats hb = dotOf(to, n);
+		const Ints above = held & ((ha > 0.0F) | (hb > 0.0F));
+		if (anyOf(above))
+		{
+			Floats cosine = dotOf(from, to);
+			Vectors first = from;
+			Vectors last = to;
+			hard |= above & (cosine < -0.95F);
+			const Ints out = above & (hb <= 0.0F);
+			const Ints in = above & (ha <= 0.0F);
+			if (anyOf(out | in))
+			{
+				const Floats wa = magnitudeOf(hb);
+				const Floats wb = magnitudeOf(ha);
+				Vectors node{from.x * wa + to.x * wb, from.y * wa + to.y * wb, from.z * wa + to.z * wb};
+				node = node * unitOf(node);
+				first = chosen(in, node, from);
+				last = chosen(out, node, to);
+				exit = chosen(out, node, exit);
+				entry = chosen(in, node, entry);
+				exits += out;
+				entries += in;
+				cosine = dotOf(first, last);
+			}
+			const Vectors across = crossOf(last, first);
+			const Floats up = dotOf(n, across);
+			Floats term = up * arcOf(magnitudeOf(cosine));
+			if (anyOf(above & (cosine < 0.0F)))
+			{
+				term = cosine < 0.0F ? 3.14159265F * up * unitOf(across) - term : term;
+			}
+			edges += above ? term : Floats{};
+		}
+		from = to;
+		ha = hb;
+	}
+	if (anyOf(exits & entries))
+	{
+		edges = side * edges + ((exits & entries) ? turnOf(entry, exit, n, side) : Floats{});
+	}
+	else
+	{
+		edges *= side;
+	}
+	hard |= (exits != entries) | (exits < -1);
+	Floats factor = edges * 0.159154943F;
+	factor = factor > 0.0F ? factor : Floats{};
+	factor = factor < 1.0F ? factor : Floats{} + 1.0F;
+	for (std::size_t lane = 0; anyOf(hard) && lane < 4; ++lane)
+	{
+		if (hard[lane] != 0)
+		{
+			std::array<glm::vec3, kMaxOccluderCorners> of_lane;
+			std::transform(corners.begin(), corners.end(), of_lane.begin(), [lane](const Vectors& v) { return laneOf(v, lane); });
+			volume_kernels::Kernels kernels;
+			kernels.corners = of_lane;
+			factor[lane] = kernels.nookFormFactor(static_cast<int>(corners.size()), laneOf(n, lane), side[lane]);
+		}
+	}
+	return factor;
+}
+
+} // namespace
+
+// Evaluates a polygon at the receivers, like nookVolume(); returns false if its volume contains none of them.
+bool VolumeEvaluator::Data::termsOf(uint32_t index, const Group& group, bool roughly, Terms& terms) const
+{
+	const Occluder& polygon = set.occluders.polygons[index];
+	const Four* const shape = &fours[first_four[index]];
+	const Vectors front = allOf(fronts[index]);
+	const auto cornerOf = [&](std::size_t i)
+	{
+		const std::array<Doubles, 3>& corners = shape[i / 4].corners;
+		return allOf(glm::dvec3(corners[0][i % 4], corners[1][i % 4], corners[2][i % 4]) - group.origin);
+	};
+	const auto minus = [](const Vectors& a, const Vectors& b)
+	{
+		return Vectors{a.x - b.x, a.y - b.y, a.z - b.z};
+	};
+	const Vectors first = cornerOf(0);
+	Vectors at = group.at;
+	terms.height = -dotOf(front, minus(first, at));
+	const Ints lifted = (magnitudeOf(terms.height) <= group.bias) & (magnitudeOf(dotOf(group.normals, front)) <= 0.7F);
+	if (anyOf(lifted)) // nookLift()
+	{
+		const Floats out =
+			polygon.two_sided ? (terms.height < 0.0F ? -1.01F * group.bias : 1.01F * group.bias) : 1.01F * group.bias;
+		const Vectors lift = front * (lifted ? out - terms.height : Floats{});
+		at = {at.x + lift.x, at.y + lift.y, at.z + lift.z};
+		terms.height = -dotOf(front, minus(first, at));
+	}
+	const auto reach = static_cast<float>(set.distance_m);
+	const Floats up = polygon.two_sided ? magnitudeOf(terms.height) : terms.height;
+	terms.held = (up > group.bias) & (up < reach * polygon.reach);
+	if (!anyOf(terms.held))
+	{
+		return false;
+	}
+	const float scale = 1.0F / reach;
+	const float least = 1.0F - polygon.side_reach;
+	std::array<Vectors, kMaxOccluderCorners> corners;
+	terms.outside = Floats{};
+	Floats falloff = polygon.alpha * (1.0F - magnitudeOf(terms.height) * scale);
+	for (std::size_t i = 0; i < polygon.corner_count; ++i)
+	{
+		corners[i] = minus(cornerOf(i), at);
+		const Floats outside = dotOf(corners[i], allOf(laneOf(shape[i / 4].inward, i % 4))); // AOV eq. 7
+		const Floats side = 1.0F - outside * scale;
+		terms.held &= (side > 0.0F) & (side >= least);
+		terms.outside = outside > terms.outside ? outside : terms.outside;
+		falloff *= side < 1.0F ? side : Floats{} + 1.0F;
+	}
+	for (std::size_t lane = 0; clamped[index] != 0 && lane < 4; ++lane)
+	{
+		terms.held[lane] &= holds(polygon, glm::dvec3(fronts[index]), group.origin + glm::dvec3(laneOf(group.at, lane))) ? -1 : 0;
+	}
+	if (!anyOf(terms.held))
+	{
+		return false;
+	}
+	const Spot& spot = spots[index];
+	const Vectors way{corners[0].x + spot.centre.x, corners[0].y + spot.centre.y, corners[0].z + spot.centre.z};
+	const Floats square = dotOf(way, way);
+	if (roughly && !anyOf(terms.held & (square < spot.far)))
+	{
+		const Floats rise = dotOf(way, group.normals);
+		terms.share = falloff * (rise > 0.0F ? rise : Floats{}) * magnitudeOf(terms.height) * (spot.area / (square * square));
+		return true;
+	}
+	const Floats side = terms.height < 0.0F ? Floats{} - 1.0F : Floats{} + 1.0F;
+	terms.share = falloff * formFactors(std::span(corners).first(polygon.corner_count), group.normals, side, terms.held);
+	return true;
+}
+
+Group VolumeEvaluator::Data::groupOf(std::span<const VolumeReceiver> receivers) const
+{
+	Group group;
+	group.count = receivers.size();
+	group.origin = receivers.front().position;
+	for (std::size_t lane = 0; lane < 4; ++lane)
+	{
+		const VolumeReceiver& receiver = receivers[std::min(lane, receivers.size() - 1)];
+		const glm::vec3 at(receiver.position - group.origin);
+		setLane(group.at, lane, at);
+		setLane(group.normals, lane, glm::vec3(receiver.normal));
+		group.bias[lane] = biasOf(receiver.bias_m);
+		group.radius = std::max({group.radius, std::fabs(at.x) + group.bias[lane], std::fabs(at.y) + group.bias[lane],
+								 std::fabs(at.z) + group.bias[lane]});
+	}
+	return group;
+}
+
+// Calls use(receiver number, polygon, terms, lane) for all volumes that contain a receiver, for each receiver in polygon order.
 template <class Use>
-uint32_t VolumeEvaluator::Data::visitShares(glm::dvec3 position, glm::vec3 normal, double bias_m, const Use& use) const
+void VolumeEvaluator::Data::visitShares(std::span<const VolumeReceiver> receivers, bool roughly, const Use& use) const
 {
-	float g = 0.0F;
-	const auto within = [&](uint32_t index, volume_kernels::Kernels& kernels, glm::vec3 front, float height)
+	constexpr float kWidest = 0.1F; // of δ: receivers farther apart share too few volumes. Tuned on an apartment.
+	for (std::size_t begin = 0, end = 0; begin < receivers.size(); begin = end)
 	{
-		const Occluder& polygon = set.occluders.polygons[index];
-		const auto count = static_cast<int>(kernels.corners.size());
-		g = polygon.alpha *
-			kernels.nookFalloff(count, front, std::fabs(height), static_cast<float>(set.distance_m), polygon.side_reach);
-		return g > 0.0F;
-	};
-	const auto share = [&](uint32_t index, volume_kernels::Kernels& kernels, glm::vec3, float height)
-	{
-		use(index, g * kernels.nookFormFactor(static_cast<int>(kernels.corners.size()), normal, height < 0.0F ? -1.0F : 1.0F));
-	};
-	return visit(position, normal, bias_m, within, share);
+		end = std::min(begin + 4, receivers.size());
+		Group group = groupOf(receivers.subspan(begin, end - begin));
+		if (end > begin + 1 && group.radius > kWidest * static_cast<float>(set.distance_m))
+		{
+			end = begin + 1;
+			group = groupOf(receivers.subspan(begin, 1));
+		}
+		const glm::vec3 at(group.origin - centre);
+		const float radius = grown + group.radius; // a point that close behind a plane may be lifted into the volume
+		const Near near(at, radius);
+		Terms terms;
+		for (const uint32_t index : candidatesAt(at, radius))
+		{
+			const bool any = near.meets(boxes[index]) && termsOf(index, group, roughly, terms);
+			for (std::size_t lane = 0; any && lane < group.count; ++lane)
+			{
+				if (terms.held[lane] != 0)
+				{
+					use(begin + lane, index, terms, lane);
+				}
+			}
+		}
+	}
 }
 
-VolumeSum VolumeEvaluator::sum(glm::dvec3 position, glm::dvec3 normal, double bias_m) const
+void VolumeEvaluator::sums(std::span<const VolumeReceiver> receivers, std::span<VolumeSum> sums, bool roughly) const
 {
-	VolumeSum sum;
-	sum.volumes = m_data->visitShares(position, glm::vec3(normal), bias_m,
-									  [&](uint32_t, float share) { sum.occlusion += static_cast<double>(share); });
-	return sum;
+	std::fill(sums.begin(), sums.end(), VolumeSum{});
+	m_data->visitShares(receivers, roughly,
+						[&](std::size_t i, uint32_t, const Terms& terms, std::size_t lane)
+						{
+							sums[i].occlusion += static_cast<double>(terms.share[lane]);
+							sums[i].volumes += 1;
+						});
 }
 
 double VolumeEvaluator::occlusion(glm::dvec3 position, glm::dvec3 normal) const
 {
-	return sum(position, normal, 0.0).occlusion;
+	const VolumeReceiver receiver{position, normal};
+	VolumeSum sum;
+	sums({&receiver, 1}, {&sum, 1});
+	return sum.occlusion;
 }
 
-void VolumeEvaluator::shares(glm::dvec3 position, glm::dvec3 normal, std::vector<VolumeShare>& shares) const
+void VolumeEvaluator::shares(std::span<const VolumeReceiver> receivers, std::span<std::vector<VolumeShare>> shares) const
 {
-	shares.clear();
-	m_data->visitShares(position, glm::vec3(normal), 0.0,
-						[&](uint32_t polygon, float share)
-						{
-							if (share > 0.0F)
-							{
-								shares.push_back({polygon, share});
-							}
-						});
+	std::for_each(shares.begin(), shares.end(), [](std::vector<VolumeShare>& of) { of.clear(); });
+	m_data->visitShares(
+		receivers, true,
+		[&](std::size_t i, uint32_t polygon, const Terms& terms, std::size_t lane)
+		{
+			if (terms.share[lane] > 0.0F)
+			{
+				shares[i].push_back({polygon, terms.share[lane], std::fabs(terms.height[lane]), terms.outside[lane]});
+			}
+		});
 }
 
 namespace
 {
 
 using MaskBits = std::array<glm::uvec4, kMostDirections / 128>;
-
-// Four edges at once, in vector types of GCC and Clang: for each the same operations as in the kernels.
-using Floats = float __attribute__((vector_size(16)));
-using Ints = int32_t __attribute__((vector_size(16)));
-using Doubles = double __attribute__((vector_size(32)));
-
-struct Vectors
-{
-	Floats x;
-	Floats y;
-	Floats z;
-};
-
-Floats dotOf(const Vectors& a, const Vectors& b)
-{
-	return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-Vectors allOf(glm::vec3 v)
-{
-	return {Floats{} + v.x, Floats{} + v.y, Floats{} + v.z};
-}
 
 // a.y * b.z - b.y * a.z. Products of 32-bit floats are exact in 64 bits, as the kernel's split ones nearly are.
 Floats exactProducts(Floats ay, Floats bz, Floats by, Floats az)
@@ -373,13 +706,8 @@ Floats exactProducts(Floats ay, Floats bz, Floats by, Floats az)
 	return __builtin_convertvector(left - __builtin_convertvector(by, Doubles) * __builtin_convertvector(az, Doubles), Floats);
 }
 
-Floats magnitudeOf(Floats v)
-{
-	return v < 0.0F ? -v : v;
-}
-
-// A receiver of masks. Its functions return what those of mask.glsl and volume.glsl do, but compute the frame once per receiver, a
-// length only for edges that may be too far, and only rays that no edge has ruled out.
+// A receiver of masks. Its functions return what those of mask.glsl do, but compute the frame once per receiver, and only rays that
+// no edge has ruled out.
 class MaskReceiver
 {
 public:
@@ -389,58 +717,21 @@ public:
 	{
 	}
 
-	// nookFalloff() > 0. Keeps the corners for cover().
-	bool isWithin(std::span<const glm::vec3> corners, glm::vec3 front, float height, float share)
+	// Removes the bits that nookMaskBits() has for the polygon.
+	void cover(const Held& held, const Occluder& polygon, MaskBits& open)
 	{
-		const float scale = 1.0F / m_reach;
-		if (!(1.0F - std::fabs(height) * scale > 0.0F))
-		{
-			return false;
-		}
-		m_blocks = (corners.size() + 3) / 4;
-		for (std::size_t i = 0; i < 4 * m_blocks; ++i)
-		{
-			const std::size_t edge = std::min(i, corners.size() - 1); // again, where there are fewer
-			set(m_from[i / 4], i % 4, corners[edge > 0 ? edge - 1 : corners.size() - 1]);
-			set(m_to[i / 4], i % 4, corners[edge]);
-		}
-		const float limit = share * m_reach;
-		const Vectors normal = allOf(front);
-		for (std::size_t block = 0; block < m_blocks; ++block)
-		{
-			const Vectors& a = m_from[block];
-			const Vectors& b = m_to[block];
-			const Vectors along{b.x - a.x, b.y - a.y, b.z - a.z};
-			const Vectors inward{normal.y * along.z - along.y * normal.z, normal.z * along.x - along.z * normal.x,
-								 normal.x * along.y - along.x * normal.y};
-			const Floats outside = dotOf(a, inward);
-			const Ints far = (outside > 0.0F) & (outside * outside > 0.99F * limit * limit * dotOf(inward, inward));
-			for (std::size_t i = 0; (far[0] | far[1] | far[2] | far[3]) != 0 && i < 4; ++i)
-			{
-				const float side = 1.0F - outside[i] * (scale * m_kernels.nookUnit({inward.x[i], inward.y[i], inward.z[i]}));
-				if (far[i] != 0 && !(side > 0.0F && side >= 1.0F - share))
-				{
-					return false;
-				}
-			}
-		}
-		return true;
-	}
-
-	// Removes the bits that nookMaskBits() has for the polygon of isWithin().
-	void cover(glm::vec3 front, float height, const Occluder& polygon, MaskBits& open)
-	{
-		const float side = height < 0.0F ? -1.0F : 1.0F;
-		const float least = std::fabs(height) / m_reach;
-		const glm::vec3 down = glm::vec3(glm::dot(front, m_x), glm::dot(front, m_y), glm::dot(front, m_normal)) * -side;
+		const float side = held.height < 0.0F ? -1.0F : 1.0F;
+		const float least = std::fabs(held.height) / m_reach;
+		const glm::vec3 down =
+			glm::vec3(glm::dot(held.front, m_x), glm::dot(held.front, m_y), glm::dot(held.front, m_normal)) * -side;
 		if (down.z < 0.0F && least * least > down.x * down.x + down.y * down.y + 1e-3F)
 		{
 			return; // no ray of the hemisphere reaches the plane
 		}
 		MaskBits bits = open;
-		for (std::size_t block = 0; block < m_blocks; ++block)
+		for (std::size_t i = 0; i < held.fours; ++i)
 		{
-			if (!cutByEdges(m_from[block], m_to[block], side, bits))
+			if (!cutByEdges(held.from[i], held.to[i], side, bits))
 			{
 				return;
 			}
@@ -464,13 +755,6 @@ public:
 	}
 
 private:
-	static void set(Vectors& to, std::size_t i, glm::vec3 v)
-	{
-		to.x[i] = v.x;
-		to.y[i] = v.y;
-		to.z[i] = v.z;
-	}
-
 	// nookInsideEdge() of nookInward(). Returns false if no bit remains.
 	bool cutByEdges(const Vectors& from, const Vectors& to, float side, MaskBits& bits)
 	{
@@ -516,9 +800,6 @@ private:
 	const MaskTables& m_tables;
 	int m_fours;
 	float m_reach;
-	std::array<Vectors, kMaxOccluderCorners / 4> m_from;
-	std::array<Vectors, kMaxOccluderCorners / 4> m_to;
-	std::size_t m_blocks = 0;
 };
 
 } // namespace
@@ -531,16 +812,19 @@ VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, int dir
 	const auto reach = static_cast<float>(m_data->set.distance_m);
 	MaskReceiver receiver(glm::vec3(normal), tables, reach);
 	VolumeMask mask;
-	const std::vector<Occluder>& polygons = m_data->set.occluders.polygons;
-	const auto within = [&](uint32_t index, volume_kernels::Kernels& kernels, glm::vec3 front, float height)
+	const glm::vec3 at(position - m_data->centre);
+	const float bias = m_data->biasOf(bias_m);
+	const Near near(at, m_data->grown + bias);
+	Held held;
+	for (const uint32_t index : m_data->candidatesAt(at, m_data->grown + bias))
 	{
-		return receiver.isWithin(kernels.corners, front, height, polygons[index].side_reach);
-	};
-	const auto cover = [&](uint32_t index, volume_kernels::Kernels&, glm::vec3 front, float height)
-	{
-		receiver.cover(front, height, polygons[index], open);
-	};
-	mask.volumes = m_data->visit(position, glm::vec3(normal), bias_m, within, cover);
+		held.index = index;
+		if (near.meets(m_data->boxes[index]) && m_data->reach(held, position, glm::vec3(normal), bias))
+		{
+			receiver.cover(held, m_data->set.occluders.polygons[index], open);
+			mask.volumes += 1;
+		}
+	}
 	int covered = static_cast<int>(tables.rays.size());
 	for (std::size_t i = 0; i < tables.rays.size() / 128; ++i)
 	{
@@ -551,15 +835,24 @@ VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, int dir
 	return mask;
 }
 
-std::function<double(glm::dvec3 position, glm::dvec3 normal)> visibilityByVolumes(const std::string& path, int directions,
-																				  const RunSettings& run)
+VisibilityAtPoints visibilityByVolumes(const std::string& path, int directions, const RunSettings& run)
 {
 	const auto volumes = std::make_shared<const VolumeSet>(readVolumes(path));
 	const auto evaluator = std::make_shared<const VolumeEvaluator>(*volumes, run);
-	return [volumes, evaluator, directions](glm::dvec3 position, glm::dvec3 normal)
+	return [volumes, evaluator, directions, threads = run.threads](std::span<const ReferencePoint> points)
 	{
-		return directions > 0 ? evaluator->mask(position, normal, directions).visibility
-							  : 1.0 - volumes->compensation.at(evaluator->occlusion(position, normal));
+		std::vector<double> values(points.size());
+		if (directions > 0)
+		{
+			parallelFor(points.size(), threads,
+						[&](std::size_t i)
+						{ values[i] = evaluator->mask(points[i].position, points[i].normal, directions).visibility; });
+			return values;
+		}
+		values = sumsAt(*evaluator, points, {threads, {}}, true);
+		std::transform(values.begin(), values.end(), values.begin(),
+					   [&](double sum) { return 1.0 - volumes->compensation.at(sum); });
+		return values;
 	};
 }
 

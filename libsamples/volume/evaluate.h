@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/progress.h"
+#include "scene/reference.h"
 #include "volume/volumes.h"
 
 #include <glm/vec3.hpp>
@@ -11,16 +12,26 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace nook
 {
 
+struct VolumeReceiver
+{
+	glm::dvec3 position; // world, metres
+	glm::dvec3 normal;   // unit
+	double bias_m = 0.0; // polygons whose plane is within this, at least kVolumeBias · δ, are ignored, for inexact positions
+};
+
 struct VolumeShare
 {
 	uint32_t polygon = 0;
 	float occlusion = 0.0F; // g · form factor, > 0
+	float height_m = 0.0F;  // distance of the point from the polygon's plane
+	float outside_m = 0.0F; // beyond its edges, ≥ 0
 };
 
 struct VolumeSum
@@ -47,15 +58,16 @@ public:
 	VolumeEvaluator(const VolumeEvaluator&) = delete;
 	VolumeEvaluator& operator=(const VolumeEvaluator&) = delete;
 
-	// Sum over all volumes of g · form factor (AOV eqs. 4 and 5) at a point with a unit normal, world space; neither clamped nor
-	// compensated. Added in polygon order.
+	// Sums over all volumes of g · form factor (AOV eqs. 4 and 5), neither clamped nor compensated, added in polygon order. Up to
+	// four consecutive receivers that are close to one another are evaluated at once; rounding depends on which ones.
+	// `roughly` takes polygons that are seven radii away as points.
+	void sums(std::span<const VolumeReceiver> receivers, std::span<VolumeSum> sums, bool roughly = false) const;
+
+	// Likewise at one point with a unit normal.
 	double occlusion(glm::dvec3 position, glm::dvec3 normal) const;
 
-	// Likewise with counts; ignores polygons whose plane is within `bias_m`, at least kVolumeBias · δ, for inexact positions.
-	VolumeSum sum(glm::dvec3 position, glm::dvec3 normal, double bias_m) const;
-
-	// The terms of that sum, in polygon order.
-	void shares(glm::dvec3 position, glm::dvec3 normal, std::vector<VolumeShare>& shares) const;
+	// The terms of these sums, roughly, in polygon order.
+	void shares(std::span<const VolumeReceiver> receivers, std::span<std::vector<VolumeShare>> shares) const;
 
 	// Fraction of the directions of a frame about the normal (directions.h, mask.glsl) that no polygon within reach covers. δ then
 	// equals the radius of the equivalent reference with linear falloff. Same requirements as maskDirections.
@@ -66,9 +78,8 @@ private:
 	std::unique_ptr<Data> m_data;
 };
 
-// Visibility at a point with a unit normal by the volumes of a file: by a mask of directions, 32 to 256, or, with 0, by their sum
-// and curve.
-std::function<double(glm::dvec3 position, glm::dvec3 normal)> visibilityByVolumes(const std::string& path, int directions,
-																				  const RunSettings& run);
+// Visibility at points by the volumes of a file: by a mask of directions, 32 to 256, or, with 0, by their sum and curve.
+using VisibilityAtPoints = std::function<std::vector<double>(std::span<const ReferencePoint> points)>;
+VisibilityAtPoints visibilityByVolumes(const std::string& path, int directions, const RunSettings& run);
 
 } // namespace nook

@@ -8,11 +8,11 @@
 #include "scene/camera_choice.h"
 #include "scene/topology.h"
 #include "volume/drop.h"
-#include "volume/evaluate.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <meshoptimizer.h>
 
 #include <algorithm>
 #include <array>
@@ -565,13 +565,53 @@ std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distanc
 	return points;
 }
 
+std::vector<uint32_t> nearOrder(std::span<const ReferencePoint> points)
+{
+	const glm::dvec3 least = boundsAround(mapped(points, [](const ReferencePoint& point) { return point.position; })).least;
+	const auto positions = mapped(points, [&least](const ReferencePoint& point) { return glm::vec3(point.position - least); });
+	std::vector<uint32_t> places(points.size());
+	if (!points.empty())
+	{
+		meshopt_spatialSortRemap(places.data(), &positions[0].x, positions.size(), sizeof(glm::vec3));
+	}
+	std::vector<uint32_t> order(points.size());
+	for (uint32_t i = 0; i < order.size(); ++i)
+	{
+		order[places[i]] = i;
+	}
+	return order;
+}
+
+std::vector<double> sumsAt(const VolumeEvaluator& evaluator, std::span<const ReferencePoint> points, const RunSettings& run,
+						   bool roughly)
+{
+	constexpr std::size_t kBlock = 64;
+	const std::vector<uint32_t> order = nearOrder(points);
+	std::vector<double> sums(points.size());
+	const std::size_t blocks = (points.size() + kBlock - 1) / kBlock;
+	ProgressCounter progress(run.progress, "sums", blocks);
+	parallelFor(blocks, run.threads,
+				[&](std::size_t block)
+				{
+					const auto of = std::span(order).subspan(block * kBlock, std::min(kBlock, points.size() - block * kBlock));
+					std::array<VolumeSum, kBlock> found;
+					evaluator.sums(mapped(of,
+										  [&](uint32_t i) {
+											  return VolumeReceiver{points[i].position, points[i].normal};
+										  }),
+								   std::span(found).first(of.size()), roughly);
+					for (std::size_t i = 0; i < of.size(); ++i)
+					{
+						sums[of[i]] = found[i].occlusion;
+					}
+					progress.finishOne();
+				});
+	return sums;
+}
+
 std::vector<double> sumsAt(const VolumeSet& volumes, std::span<const ReferencePoint> points, const RunSettings& run)
 {
-	const VolumeEvaluator evaluator(volumes, run);
-	std::vector<double> sums(points.size());
-	inBlocks(points.size(), 64, run, "sums",
-			 [&](std::size_t i) { sums[i] = evaluator.occlusion(points[i].position, points[i].normal); });
-	return sums;
+	return sumsAt(VolumeEvaluator(volumes, run), points, run);
 }
 
 VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::span<const ReferencePoint> receivers,

@@ -7,6 +7,7 @@
 #include "scene/camera.h"
 #include "scene/reference.h"
 #include "scene/tracer.h"
+#include "volume/evaluate.h"
 #include "volume/volumes.h"
 
 #include <glm/mat4x4.hpp>
@@ -124,7 +125,12 @@ struct VerifyResult
 	glm::dvec3 worst_position{0.0}; // where `greatest` occurs
 };
 
-// VolumeEvaluator::occlusion() at points.
+// Order of points that keeps neighbours close together.
+std::vector<uint32_t> nearOrder(std::span<const ReferencePoint> points);
+
+// Sums of volumes at points.
+std::vector<double> sumsAt(const VolumeEvaluator& evaluator, std::span<const ReferencePoint> points, const RunSettings& run,
+						   bool roughly = false);
 std::vector<double> sumsAt(const VolumeSet& volumes, std::span<const ReferencePoint> points, const RunSettings& run);
 
 VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::span<const ReferencePoint> receivers,

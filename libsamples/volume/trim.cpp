@@ -12,7 +12,6 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <meshoptimizer.h>
 
 #include <algorithm>
 #include <cassert>
@@ -53,6 +52,7 @@ constexpr std::size_t kFewestReceivers = 4;    // per volume that is trimmed
 constexpr int kRays = 16;                      // from a polygon whose volume has fewer receivers
 constexpr std::size_t kSample = 4096;          // receivers sampled to estimate the shares per receiver
 constexpr std::size_t kReceiversAtOnce = 4096; // receivers processed at a time
+constexpr std::size_t kGroup = 16;             // of them by a thread
 
 // Final price of a volume's surface, with an allowance of 1, relative to the average loss per surface. With an allowance of 0.15 or
 // 0.2 it stops few exchanges by itself.
@@ -67,24 +67,6 @@ struct Asked
 	std::size_t left_out = 0; // receivers
 };
 
-// Order of the points that keeps neighbours close together.
-std::vector<uint32_t> nearOrder(const std::vector<ReferencePoint>& points)
-{
-	const glm::dvec3 least = boundsAround(mapped(points, [](const ReferencePoint& point) { return point.position; })).least;
-	const auto positions = mapped(points, [&least](const ReferencePoint& point) { return glm::vec3(point.position - least); });
-	std::vector<uint32_t> places(points.size());
-	if (!points.empty())
-	{
-		meshopt_spatialSortRemap(places.data(), &positions[0].x, positions.size(), sizeof(glm::vec3));
-	}
-	std::vector<uint32_t> order(points.size());
-	for (uint32_t i = 0; i < order.size(); ++i)
-	{
-		order[places[i]] = i;
-	}
-	return order;
-}
-
 // Drops random points if all of them would have more than `most_shares` shares; returns how many.
 std::size_t leaveOut(const VolumeEvaluator& evaluator, std::size_t most_shares, const RunSettings& run,
 					 std::vector<ReferencePoint>& points)
@@ -98,52 +80,54 @@ std::size_t leaveOut(const VolumeEvaluator& evaluator, std::size_t most_shares, 
 	{
 		std::swap(points[i], points[random.below(i + 1)]);
 	}
-	std::vector<std::size_t> counts(kSample);
+	std::vector<VolumeSum> sums(kSample);
 	parallelFor(kSample, run.threads,
 				[&](std::size_t i)
 				{
-					thread_local std::vector<VolumeShare> shares;
-					evaluator.shares(points[i].position, points[i].normal, shares);
-					counts[i] = shares.size();
+					const VolumeReceiver receiver{points[i].position, points[i].normal};
+					evaluator.sums({&receiver, 1}, {&sums[i], 1});
 				});
-	const std::size_t shares = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+	std::size_t shares = 0;
+	for (const VolumeSum& sum : sums)
+	{
+		shares += sum.volumes;
+	}
 	const std::size_t before = points.size();
 	points.resize(std::clamp(shares > 0 ? most_shares * kSample / shares : before, kSample, before));
 	return before - points.size();
 }
 
 // Adds the contributions of volumes to these receivers.
-void ask(const VolumeSet& volumes, const VolumeEvaluator& evaluator, std::vector<ReferencePoint> points, std::size_t most_shares,
+void ask(double distance_m, const VolumeEvaluator& evaluator, std::vector<ReferencePoint> points, std::size_t most_shares,
 		 const RunSettings& run, Asked& asked)
 {
 	asked.left_out += leaveOut(evaluator, most_shares, run, points);
+	const auto per_m = static_cast<float>(1.0 / distance_m);
 	const std::vector<uint32_t> order = nearOrder(points);
 	std::vector<std::vector<VolumeShare>> shares(kReceiversAtOnce);
-	std::vector<std::vector<VolumeReach>> reaches(kReceiversAtOnce);
 	ProgressCounter progress(run.progress, "trim", points.size());
 	for (std::size_t first = 0; first < points.size(); first += kReceiversAtOnce)
 	{
 		const std::size_t count = std::min(kReceiversAtOnce, points.size() - first);
-		parallelFor(count, run.threads,
-					[&](std::size_t i)
+		parallelFor((count + kGroup - 1) / kGroup, run.threads,
+					[&](std::size_t group)
 					{
-						const ReferencePoint& receiver = points[order[first + i]];
-						evaluator.shares(receiver.position, receiver.normal, shares[i]);
-						reaches[i].clear();
-						for (const VolumeShare& share : shares[i])
-						{
-							const Occluder& polygon = volumes.occluders.polygons[share.polygon];
-							reaches[i].push_back(reachFor(volumes, polygon, receiver.position));
-						}
+						const std::size_t begin = group * kGroup;
+						const std::size_t size = std::min(kGroup, count - begin);
+						const auto receivers = mapped(std::span(order).subspan(first + begin, size),
+													  [&](uint32_t i) {
+														  return VolumeReceiver{points[i].position, points[i].normal};
+													  });
+						evaluator.shares(receivers, std::span(shares).subspan(begin, size));
 					});
 		for (std::size_t i = 0; i < count; ++i)
 		{
 			double sum = 0.0;
-			for (std::size_t k = 0; k < shares[i].size(); ++k)
+			for (const VolumeShare& share : shares[i])
 			{
-				const VolumeShare& share = shares[i][k];
 				sum += static_cast<double>(share.occlusion);
-				asked.parts[share.polygon].emplace_back(static_cast<uint32_t>(asked.sums.size()), share.occlusion, reaches[i][k]);
+				const VolumeReach needed{share.height_m * per_m, share.outside_m * per_m};
+				asked.parts[share.polygon].emplace_back(static_cast<uint32_t>(asked.sums.size()), share.occlusion, needed);
 			}
 			asked.sums.push_back(sum);
 			asked.shares += shares[i].size();
@@ -207,10 +191,10 @@ Asked askAll(const VolumeSet& volumes, std::span<const ReferencePoint> receivers
 	Asked asked;
 	asked.parts.resize(volumes.occluders.polygons.size());
 	const std::size_t most_shares = std::max(settings.most_shares, settings.shares_each * asked.parts.size());
-	ask(volumes, evaluator, {receivers.begin(), receivers.end()}, most_shares, run, asked);
+	ask(volumes.distance_m, evaluator, {receivers.begin(), receivers.end()}, most_shares, run, asked);
 	if (tracer != nullptr)
 	{
-		ask(volumes, evaluator, seenOfFew(*tracer, volumes, asked, run), most_shares, run, asked);
+		ask(volumes.distance_m, evaluator, seenOfFew(*tracer, volumes, asked, run), most_shares, run, asked);
 	}
 	return asked;
 }
@@ -258,6 +242,7 @@ Shrinking::Shrinking(const VolumeSet& volumes, const Occluder& polygon, std::spa
 	}
 	m_area = glm::length(across);
 	m_sides = polygon.two_sided ? 2.0 : 1.0;
+	findFirst();
 }
 
 double Shrinking::surface(VolumeReach reach) const
@@ -290,6 +275,7 @@ void Shrinking::shrink(TrimAllowances& allowances, double price)
 			allowances.take(part);
 		}
 		m_left = left;
+		findFirst();
 	}
 }
 
@@ -313,41 +299,40 @@ VolumeReach Shrinking::cutTo(int way, VolumeReach reach, uint32_t along)
 	return {way == 1 ? reach.height : std::min(reach.height, to), way == 0 ? reach.side : std::min(reach.side, to)};
 }
 
-// Outermost parts first, while the cost is acceptable. That is usually short, so the first one is found by a scan and further ones
-// by a heap.
-void Shrinking::look(int way, const TrimAllowances& allowances, double price, Step& best) const
+Shrinking::Place Shrinking::placeOf(int way, uint32_t part) const
 {
-	struct Place
-	{
-		uint64_t order = 0; // distance from the outside, then the lowest receiver
-		uint32_t part = 0;
-
-		bool operator<(const Place& other) const
-		{
-			return order < other.order;
-		}
-	};
 	const uint32_t step = way == 1 ? static_cast<uint32_t>(m_reach.height * 128.0F) : 8; // file steps, in 1/1024
-	const auto placeOf = [&](uint32_t part)
-	{
-		return Place{uint64_t{m_parts[part].along(way, step)} << 32U | ~m_parts[part].receiver(), part};
-	};
-	Place first;
+	return {uint64_t{m_parts[part].along(way, step)} << 32U | ~m_parts[part].receiver(), part};
+}
+
+void Shrinking::findFirst()
+{
+	std::array<Place, kWays> first{};
 	for (uint32_t i = 0; i < m_left; ++i)
 	{
-		first = std::max(first, placeOf(i));
+		for (std::size_t way = 0; way < kWays; ++way)
+		{
+			first[way] = std::max(first[way], placeOf(static_cast<int>(way), i));
+		}
 	}
+	std::transform(first.begin(), first.end(), m_first.begin(), [](const Place& place) { return place.part; });
+}
+
+// Outermost parts first, while the cost is acceptable. That is usually short, so only the first one is kept between looks, and
+// further ones are found by a heap.
+void Shrinking::look(int way, const TrimAllowances& allowances, double price, Step& best) const
+{
 	const double now = surface(m_reach);
 	const double most = price * (now - surface(cutTo(way, m_reach, 0)));
 	const auto isTooMuch = [&](const TrimPart& part, double before)
 	{
 		return !allowances.canTake(part) || most - (before + allowances.lossOf(part)) <= best.value;
 	};
-	if (m_left == 0 || isTooMuch(m_parts[first.part], 0.0))
+	if (m_left == 0 || isTooMuch(m_parts[m_first[static_cast<std::size_t>(way)]], 0.0))
 	{
 		return;
 	}
-	std::vector<Place> places = listOf(m_left, [&](std::size_t i) { return placeOf(static_cast<uint32_t>(i)); });
+	std::vector<Place> places = listOf(m_left, [&](std::size_t i) { return placeOf(way, static_cast<uint32_t>(i)); });
 	std::make_heap(places.begin(), places.end());
 	double loss = 0.0;
 	while (!places.empty())
@@ -372,22 +357,6 @@ void Shrinking::look(int way, const TrimAllowances& allowances, double price, St
 			best = {value, reach};
 		}
 	}
-}
-
-VolumeReach reachFor(const VolumeSet& volumes, const Occluder& polygon, glm::dvec3 position)
-{
-	const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(polygon);
-	const glm::dvec3 front = frontOf(corners);
-	double side_m = 0.0;
-	glm::dvec3 a = corners.back();
-	for (const glm::dvec3& b : corners)
-	{
-		const glm::dvec3 outward = glm::normalize(glm::cross(b - a, front));
-		side_m = std::max(side_m, glm::dot(outward, position - a));
-		a = b;
-	}
-	return {static_cast<float>(std::fabs(glm::dot(front, position - corners[0])) / volumes.distance_m),
-			static_cast<float>(side_m / volumes.distance_m)};
 }
 
 TrimCounts trimVolumes(VolumeSet& volumes, std::span<const ReferencePoint> receivers, const TrimSettings& settings,

@@ -8,6 +8,7 @@
 #include "volume/receivers.h"
 #include "volume/volumes.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -57,8 +58,6 @@ struct VolumeReach
 	float height = 1.0F;
 	float side = 1.0F;
 };
-
-VolumeReach reachFor(const VolumeSet& volumes, const Occluder& polygon, glm::dvec3 position);
 
 // For trim.cpp: one volume that is made lower or narrower step by step, and what receivers may lose by it.
 
@@ -197,13 +196,27 @@ private:
 		VolumeReach reach;
 	};
 
+	struct Place
+	{
+		uint64_t order = 0; // distance from the outside, then the lowest receiver
+		uint32_t part = 0;
+
+		bool operator<(const Place& other) const
+		{
+			return order < other.order;
+		}
+	};
+
+	Place placeOf(int way, uint32_t part) const;
+	void findFirst();
 	void look(int way, const TrimAllowances& allowances, double price, Step& best) const;
 
 	std::span<TrimPart> m_parts; // remaining parts first, then lost ones
 	std::size_t m_left = 0;
-	double m_area = 0.0;    // polygon area, in squared distances
-	double m_outline = 0.0; // polygon perimeter, in distances
-	double m_mitres = 0.0;  // growth at corners, in squares of the side
+	std::array<uint32_t, kWays> m_first{}; // the outermost remaining part of each way
+	double m_area = 0.0;                   // polygon area, in squared distances
+	double m_outline = 0.0;                // polygon perimeter, in distances
+	double m_mitres = 0.0;                 // growth at corners, in squares of the side
 	double m_sides = 1.0;
 	VolumeReach m_reach;
 };

@@ -124,7 +124,7 @@ grep -q 'kept.json$' a.d || problem "tile --depfile: expected the pattern in it"
 there a.d a.png
 works 'tile: disk, 4 samples in each of 2 x 2 variants' info kept_tile.json
 printf '0,0\n0.5,0\n-0.5,0\n' >kept.csv
-works 'recipes: of [0-9]* methods' info "$(dirname "$0")/../libsamples/methods/rays.json"
+works 'recipes: of [0-9]* methods' info "$(dirname "$0")/../docs/measurements/rays.json"
 works 'pattern: disk, 3 samples' info kept.csv
 works 'weights: none in the file' info kept.csv
 works '' tile --pattern kept.csv --size 3 --kind random -o a.json

@@ -263,7 +263,10 @@ void addBakeSettings(Facts& facts, const BakeOptions& options)
 	if (settings.max_error > 0.0)
 	{
 		facts.number("max_error", settings.max_error);
-		options.automatic ? void() : facts.whole("max_vertices", settings.max_vertices);
+		if (!options.automatic)
+		{
+			facts.whole("max_vertices", settings.max_vertices);
+		}
 	}
 	if (options.max_bytes > 0)
 	{

@@ -52,11 +52,6 @@ Vectors operator*(const Vectors& a, const Floats& b)
 	return {a.x * b, a.y * b, a.z * b};
 }
 
-Vectors crossOf(const Vectors& a, const Vectors& b)
-{
-	return {a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
-}
-
 Vectors allOf(glm::vec3 v)
 {
 	return {Floats{} + v.x, Floats{} + v.y, Floats{} + v.z};
@@ -73,11 +68,15 @@ bool anyOf(const Ints& lanes)
 	return (halves[0] | halves[1]) != 0;
 }
 
+Floats rootOf(const Floats& a)
+{
+	return Floats{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+}
+
 // nookUnit()
 Floats unitOf(const Vectors& a)
 {
-	const Floats square = dotOf(a, a) > 1e-30F ? dotOf(a, a) : Floats{} + 1e-30F;
-	return 1.0F / Floats{std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2]), std::sqrt(square[3])};
+	return 1.0F / rootOf(dotOf(a, a) > 1e-30F ? dotOf(a, a) : Floats{} + 1e-30F);
 }
 
 // The lanes of both in a row, without the first.
@@ -453,76 +452,60 @@ Floats arcOf(const Floats& x)
 	return 1.57079595F + x * (-0.999943104F + x * (0.783984789F + x * (-0.653083218F + x * p)));
 }
 
-// nookTurn()
-Floats turnOf(const Vectors& a, const Vectors& b, const Vectors& axis, const Floats& side)
-{
-	const Floats sine = dotOf(crossOf(a, b), axis) * side;
-	const Floats cosine = dotOf(a, b);
-	const Floats arc = arcOf(magnitudeOf(cosine));
-	return cosine < 0.0F ? 3.14159265F - arc * magnitudeOf(sine) : arc * sine;
-}
-
-// nookFormFactor() for the receivers among `held`. Edges that appear nearly as long as half a turn take more digits, and rounding
-// may cut a polygon more than once: the kernel itself evaluates such receivers.
+// nookFormFactor() for the receivers among `held`. Edges that appear nearly as long as half a turn take more digits: the kernel
+// itself evaluates such receivers.
 Floats formFactors(std::span<const Vectors> corners, const Vectors& n, const Floats& side, const Ints& held)
 {
-	Vectors from = corners.back() * unitOf(corners.back());
-	Floats ha = dotOf(from, n);
+	const Floats upward = n.z < 0.0F ? Floats{} - 1.0F : Floats{} + 1.0F;
+	const Floats q = -1.0F / (upward + n.z);
+	const Floats mixed = n.x * n.y * q;
+	const Vectors right{1.0F + upward * n.x * n.x * q, upward * mixed, -upward * n.x};
+	const Vectors forward{mixed, upward + n.y * n.y * q, -n.y};
+	const auto directionOf = [&](const Vectors& corner)
+	{
+		const Vectors away = corner * unitOf(corner);
+		return Vectors{dotOf(away, right), dotOf(away, forward), dotOf(away, n)};
+	};
+	Vectors from = directionOf(corners.back());
 	Floats edges{};
-	Ints exits{}; // −1 each
-	Ints entries{};
+	Vectors cut{Floats{} + 1.0F, Floats{}, Floats{}};
 	Ints hard{};
-	Vectors exit{};
-	Vectors entry{};
 	for (const Vectors& corner : corners)
 	{
-		const Vectors to = corner * unitOf(corner);
-		const Floats hb = dotOf(to, n);
-		const Ints above = held & ((ha > 0.0F) | (hb > 0.0F));
+		const Vectors to = directionOf(corner);
+		const Ints above = held & ((from.z > 0.0F) | (to.z > 0.0F));
 		if (anyOf(above))
 		{
 			Floats cosine = dotOf(from, to);
 			Vectors first = from;
 			Vectors last = to;
 			hard |= above & (cosine < -0.95F);
-			const Ints out = above & (hb <= 0.0F);
-			const Ints in = above & (ha <= 0.0F);
-			if (anyOf(out | in))
+			const Ints exits = above & (to.z <= 0.0F);
+			const Ints crosses = exits | (above & (from.z <= 0.0F));
+			if (anyOf(crosses))
 			{
-				const Floats wa = magnitudeOf(hb);
-				const Floats wb = magnitudeOf(ha);
-				Vectors node{from.x * wa + to.x * wb, from.y * wa + to.y * wb, from.z * wa + to.z * wb};
+				const Floats wa = magnitudeOf(to.z);
+				const Floats wb = magnitudeOf(from.z);
+				Vectors node{from.x * wa + to.x * wb, from.y * wa + to.y * wb, Floats{}};
 				node = node * unitOf(node);
-				first = chosen(in, node, from);
-				last = chosen(out, node, to);
-				exit = chosen(out, node, exit);
-				entry = chosen(in, node, entry);
-				exits += out;
-				entries += in;
+				first = chosen(crosses & ~exits, node, from);
+				last = chosen(exits, node, to);
 				cosine = dotOf(first, last);
+				const Floats turn = exits ? node.y : -node.y;
+				cut = chosen(crosses, {cut.x * node.x - cut.y * turn, cut.x * turn + cut.y * node.x, Floats{}}, cut);
 			}
-			const Vectors across = crossOf(last, first);
-			const Floats up = dotOf(n, across);
-			Floats term = up * arcOf(magnitudeOf(cosine));
-			if (anyOf(above & (cosine < 0.0F)))
-			{
-				term = cosine < 0.0F ? 3.14159265F * up * unitOf(across) - term : term;
-			}
-			edges += above ? term : Floats{};
+			const Floats sine = last.x * first.y - last.y * first.x;
+			const Floats term = sine * arcOf(magnitudeOf(cosine));
+			const Ints obtuse = above & (cosine < 0.0F);
+			const Floats rest = anyOf(obtuse) ? 3.14159265F * (sine / rootOf(1.0F - cosine * cosine)) - term : term;
+			edges += above ? (obtuse ? rest : term) : Floats{};
 		}
 		from = to;
-		ha = hb;
 	}
-	if (anyOf(exits & entries))
-	{
-		edges = side * edges + ((exits & entries) ? turnOf(entry, exit, n, side) : Floats{});
-	}
-	else
-	{
-		edges *= side;
-	}
-	hard |= (exits != entries) | (exits < -1);
-	Floats factor = edges * 0.159154943F;
+	const Floats arc = arcOf(magnitudeOf(cut.x));
+	const Floats rise = side * cut.y;
+	const Floats cuts = cut.x < 0.0F ? 3.14159265F - arc * magnitudeOf(rise) : arc * rise;
+	Floats factor = (side * edges + cuts) * 0.159154943F;
 	factor = factor > 0.0F ? factor : Floats{};
 	factor = factor < 1.0F ? factor : Floats{} + 1.0F;
 	for (std::size_t lane = 0; anyOf(hard) && lane < 4; ++lane)

@@ -40,7 +40,7 @@ constexpr uint32_t kOther = 0x5eed0ffeU; // a sequence that neither the fit nor 
 constexpr std::size_t kCheckPoints = 4096;
 constexpr std::size_t kShort = 65535; // vertices of 16-bit indices
 
-// What is known about a chart.
+// Measurements of a chart.
 struct ChartFacts
 {
 	double weight = 0.0;      // points on its front
@@ -303,7 +303,7 @@ private:
 		return true;
 	}
 
-	// What the textures of a bake say about those of the trial's texels.
+	// Reads the errors of a bake's textures as those of the trial's texels.
 	void measureTextures(AutoBake& bake, const Choice& choice)
 	{
 		std::vector<double> of_chart;

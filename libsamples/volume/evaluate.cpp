@@ -151,7 +151,7 @@ struct Group
 	float radius = 0.0F; // from the origin, with the bias
 };
 
-// What a polygon does to the receivers of a group.
+// The values of a polygon at the receivers of a group.
 struct Terms
 {
 	Ints held; // −1: its volume contains the receiver

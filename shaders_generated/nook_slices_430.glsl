@@ -220,14 +220,15 @@ vec3 nookSliceSectors(float sine, float cosine)
 	return vec3(each, 0.5f + each * lower, whole);
 }
 
-// Number of the sectors of a slice, 31 of equal weight, that come before a direction on one side of the eye, rounded. cosine: of
-// its angle t to the eye; edge: 1 - cos(t) of the tangent plane; tilt: sectors.x times half the cosine of the normal's angle,
-// negative on the negative side; fit: nookSliceSegment times sectors.x times half the sine; start: sectors.y.
-int nookSliceSector(float cosine, float edge, float tilt, vec3 fit, float start)
+// Numbers of the sectors of a slice, 31 of equal weight, that come before four directions, rounded: x and z on the positive side, y
+// and w on the negative one. cosine: of their angles t to the eye; edge: 1 - cos(t) of the tangent plane; tilt: sectors.x times half
+// the cosine of the normal's angle, negative on the negative side; fit: nookSliceSegment times sectors.x times half the sine;
+// start: sectors.y.
+ivec4 nookSliceSector(vec4 cosine, vec4 edge, vec4 tilt, vec3 fit, float start)
 {
-	float less = min(1.0f - cosine, edge);
-	float curve = sqrt(abs(less)) * (fit.x + less * (fit.y + less * fit.z));
-	return int(start + less * (2.0f * tilt - tilt * less + curve));
+	vec4 less = min(1.0f - cosine, edge);
+	vec4 curve = sqrt(abs(less)) * (fit.x + less * (fit.y + less * fit.z));
+	return ivec4(start + less * (2.0f * tilt - tilt * less + curve));
 }
 
 // Number of bits that are set.
@@ -257,6 +258,7 @@ float nookSliceStep(float part, float pixels)
 // sample lies beside the slice, by up to half a pixel or because the picture ends there, it keeps its height above the tangent
 // plane, so that planes cover nothing. Moved into the slice at that height, a sample beside a grazing slice may end up on the
 // other side: then it is ignored.
+// Both sides are computed together, as x and y of vectors, and do not wait for each other.
 vec4 nookSlice(ivec2 pixel, float depth, float radius, vec2 scale, vec3 sight, vec3 across, vec3 up, vec3 v, vec3 facing,
 			   vec2 azimuth, float jitter)
 {
@@ -288,43 +290,50 @@ vec4 nookSlice(ivec2 pixel, float depth, float radius, vec2 scale, vec3 sight, v
 	float pixels = sqrt(dot(way, way));
 	float behind = 0.03125f * nook.slice_thickness;
 	float thicker = 0.96875f * nook.slice_thickness;
-	float even = jitter / float(4);
-	float odd = (jitter + (jitter < 0.5f ? 0.5f : -0.5f)) / float(4);
+	vec2 start = vec2(jitter / float(4), (jitter + (jitter < 0.5f ? 0.5f : -0.5f)) / float(4));
+	vec2 side = vec2(1.0f, -1.0f);
+	vec4 edge = vec4(1.0f + sine, 1.0f - sine, 1.0f + sine, 1.0f - sine);
+	vec4 tilt = vec4(tilted, -tilted, tilted, -tilted);
 	uint open = 2147483647u;
 	float closed = 0.0f;
-	float before = nookSliceStep(0.0f, pixels); // place of the previous step on the side, and on the other one
-	float other = before;
+	float nearest = nookSliceStep(0.0f, pixels);
+	vec2 before = vec2(nearest, nearest); // places of the previous steps
 	vec2 lost = vec2(0.0f, 0.0f);
-	for (int k = 0; k < 2 * 4; ++k)
+	for (int k = 0; k < 4; ++k)
 	{
-		bool positive = k % 2 == 0;
-		float side = positive ? 1.0f : -1.0f;
-		float share = (positive ? even : odd) + float(k / 2) / float(4);
-		float place = nookSliceStep(share * share * share, pixels);
-		vec2 wanted = vec2(floor(way.x * (side * place) + 0.5f), floor(way.y * (side * place) + 0.5f));
-		vec2 there = vec2(clamp(wanted.x, around.x, around.z), clamp(wanted.y, around.y, around.w));
-		float z = min(nookDepth(nookThere(pixel, there)), deepest);
-		float at = nook.w_slope * z + nook.w_start;
-		float x = at * (x_of.x * there.x + x_of.y * there.y); // exactly 0 for the pixel itself
-		float y = at * (y_of.x * there.x + y_of.y * there.y) + (level - deeper * z);
-		float squared = x * x + 1e-12f;
-		float apart = y * y + squared;
-		float inverse = 1.0f / sqrt(apart);
-		float distance = apart * inverse;
-		float back = y - (behind + thicker * distance);
-		float edge = 1.0f + side * sine;
-		int near = nookSliceSector(y * inverse, edge, side * tilted, fit, sectors.y);
-		int far = nookSliceSector(back / sqrt(back * back + squared), edge, side * tilted, fit, sectors.y);
-		int first = positive ? near : min(near, far);
-		int end = positive ? max(near, far) : near;
-		uint fresh = ((1u << uint(end)) - (1u << uint(first))) & open;
-		fresh = z < deepest && apart < 1.0f && x * side > 0.0f ? fresh : 0u;
-		open = open - fresh;
-		float known = there == wanted ? 1.0f : 0.5f;
-		float counts = known * (1.0f - (1.0f / 3.0f + 2.0f / 3.0f * before / place) * distance);
-		before = other;
-		other = place;
-		closed += float(nookSliceBitCount(fresh)) * counts;
+		vec2 share = start + float(k) / float(4);
+		vec2 place = nearest + (1.0f - nearest) * (share * share * share); // nookSliceStep
+		vec2 wanted_x = floor(way.x * (side * place) + 0.5f);
+		vec2 wanted_y = floor(way.y * (side * place) + 0.5f);
+		vec2 i = clamp(wanted_x, vec2(around.x, around.x), vec2(around.z, around.z));
+		vec2 j = clamp(wanted_y, vec2(around.y, around.y), vec2(around.w, around.w));
+		float positive = nookDepth(nookThere(pixel, vec2(i.x, j.x)));
+		float negative = nookDepth(nookThere(pixel, vec2(i.y, j.y)));
+		vec2 z = vec2(min(positive, deepest), min(negative, deepest));
+		vec2 at = nook.w_slope * z + nook.w_start;
+		vec2 x = at * (x_of.x * i + x_of.y * j); // exactly 0 for the pixel itself
+		vec2 y = at * (y_of.x * i + y_of.y * j) + (level - deeper * z);
+		vec2 squared = x * x + 1e-12f;
+		vec2 apart = y * y + squared;
+		vec2 inverse = 1.0f / sqrt(apart);
+		vec2 distance = apart * inverse;
+		vec2 back = y - (behind + thicker * distance);
+		vec2 near = y * inverse;
+		vec2 far = back / sqrt(back * back + squared);
+		ivec4 sector = nookSliceSector(vec4(near.x, near.y, far.x, far.y), edge, tilt, fit, sectors.y);
+		ivec2 first = ivec2(sector.x, min(sector.y, sector.w));
+		ivec2 end = ivec2(max(sector.x, sector.z), sector.y);
+		uint ahead = ((1u << uint(end.x)) - (1u << uint(first.x))) & open;
+		ahead = z.x < deepest && apart.x < 1.0f && x.x > 0.0f ? ahead : 0u;
+		open = open - ahead;
+		uint opposite = ((1u << uint(end.y)) - (1u << uint(first.y))) & open;
+		opposite = z.y < deepest && apart.y < 1.0f && x.y < 0.0f ? opposite : 0u;
+		open = open - opposite;
+		vec2 known = vec2(i.x == wanted_x.x && j.x == wanted_y.x ? 1.0f : 0.5f, i.y == wanted_x.y && j.y == wanted_y.y ? 1.0f : 0.5f);
+		vec2 counts = known * (1.0f - (1.0f / 3.0f + 2.0f / 3.0f * before / place) * distance);
+		before = place;
+		closed += float(nookSliceBitCount(ahead)) * counts.x;
+		closed += float(nookSliceBitCount(opposite)) * counts.y;
 	}
 	float whole = sqrt(square) * sectors.z;
 	return vec4(whole * (1.0f - closed / 31.0f), whole, lost.x * sqrt(square), lost.y * sqrt(square));

@@ -86,13 +86,14 @@ TEST_CASE("shade slices: angles and the sectors before a direction, against thei
 		const auto cosine = static_cast<float>(turn.cos);
 		const glm::vec3 sectors = kernels.nookSliceSectors(sine, cosine);
 		const glm::vec3 fit = kernels.nookSliceSegment() * (0.5F * sine * sectors.x);
+		const glm::vec4 edge(1.0F + sine, 1.0F - sine, 1.0F + sine, 1.0F - sine);
+		const glm::vec4 tilt = glm::vec4(0.5F, -0.5F, 0.5F, -0.5F) * (cosine * sectors.x);
 		CHECK(static_cast<double>(sectors.z) == Approx(turn.cos + normal * turn.sin).margin(0.012));
 		for (int i = 1; i < parts; i += 397)
 		{
 			const SinCos at = sinCosOf(normal + kPi * (static_cast<double>(i) / parts - 0.5));
-			const float side = at.sin < 0.0 ? -1.0F : 1.0F;
-			const int sector = kernels.nookSliceSector(static_cast<float>(at.cos), 1.0F + side * sine,
-													   side * 0.5F * cosine * sectors.x, fit, sectors.y);
+			const glm::ivec4 sides = kernels.nookSliceSector(glm::vec4(static_cast<float>(at.cos)), edge, tilt, fit, sectors.y);
+			const int sector = at.sin < 0.0 ? sides.y : sides.x;
 			const double exact = 31.0 * before[static_cast<std::size_t>(i)] / before.back();
 			CAPTURE(normal, i, exact, sector);
 			REQUIRE(std::fabs(sector - exact) < 0.75);
@@ -100,10 +101,7 @@ TEST_CASE("shade slices: angles and the sectors before a direction, against thei
 		// The tangent plane is at the ends, and beyond it nothing changes.
 		for (const float beyond : {0.0F, 0.4F})
 		{
-			const float lower = 1.0F - sine;
-			const float upper = 1.0F + sine;
-			CHECK(kernels.nookSliceSector(1.0F - lower - beyond, lower, -0.5F * cosine * sectors.x, fit, sectors.y) == 0);
-			CHECK(kernels.nookSliceSector(1.0F - upper - beyond, upper, 0.5F * cosine * sectors.x, fit, sectors.y) == 31);
+			CHECK(kernels.nookSliceSector(1.0F - edge - beyond, edge, tilt, fit, sectors.y) == glm::ivec4(31, 0, 31, 0));
 		}
 	}
 }

@@ -33,7 +33,7 @@ constexpr int kPage_px = 4096;
 constexpr double kTexelsOfPage = 8e6; // half of it
 constexpr int kTries = 6;
 constexpr double kEnough = 1.02;       // of the error asked for
-constexpr double kPointsOfTexel = 4.0; // that tell errors, per texel of the trial
+constexpr double kPointsOfTexel = 4.0; // to measure errors, per texel of the trial
 constexpr double kFewestPoints = 262144.0;
 constexpr double kMostPoints = 1048576.0;
 constexpr uint32_t kOther = 0x5eed0ffeU; // a sequence that neither the fit nor the check uses
@@ -45,7 +45,7 @@ struct ChartFacts
 {
 	double weight = 0.0;      // points on its front
 	double at_vertices = 0.0; // mean squared error of the front
-	double in_texture = 0.0;  // likewise at texels of the trial's size
+	double in_texture = 0.0;  // mean squared error at texels of the trial's size
 	double area_m2 = 0.0;
 	double across_m = 0.0; // its longer side
 	std::size_t piece = 0;
@@ -157,7 +157,7 @@ private:
 		return packLevel(m_level, m_pieces, m_charted, densities, settings, m_run);
 	}
 
-	// Points for the fit, as many as for values at the vertices, and others that tell how far its result is from rays.
+	// Points for the fit, as many as for values at the vertices, and others to measure the error of its result.
 	void sample()
 	{
 		const Level level = pack(std::vector<int>(m_charts.size(), kVertices)).level;
@@ -178,7 +178,7 @@ private:
 		std::erase_if(m_points, [](const SurfaceSample& point) { return point.buried || point.shut; });
 	}
 
-	// On the side that a texture is for?
+	// Is it on the side that gets a texture?
 	bool isFront(const SurfaceSample& sample) const
 	{
 		return !sample.back || m_wanted.one_side;

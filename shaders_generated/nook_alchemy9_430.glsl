@@ -157,26 +157,32 @@ vec3 nookSight(ivec2 pixel)
 				1.0f);
 }
 
-// First and last pixel that hold depth, relative to a pixel.
+// First and last pixel that hold depth, near a pixel.
 vec4 nookAround(ivec2 pixel)
 {
-	return vec4(float(nook.first.x - pixel.x), float(nook.first.y - pixel.y), float(nook.last.x - pixel.x),
-				float(nook.last.y - pixel.y));
+	return vec4(uintBitsToFloat(uint(nook.first.x + 0x4b400000 - pixel.x)), uintBitsToFloat(uint(nook.first.y + 0x4b400000 - pixel.y)),
+				uintBitsToFloat(uint(nook.last.x + 0x4b400000 - pixel.x)), uintBitsToFloat(uint(nook.last.y + 0x4b400000 - pixel.y)));
 }
 
 // The pixel at `offset` (x to the right, y up, in the unit of `scale`) from the centre of a pixel, moved to the nearest one that
-// holds depth: pixels to the right and downward. around: nookAround.
-vec2 nookAcross(vec4 around, vec2 offset, vec2 scale)
+// holds depth. around: nookAround.
+vec2 nookNear(vec4 around, vec2 offset, vec2 scale)
 {
-	float x = floor(0.5f + offset.x * scale.x);
-	float y = floor(0.5f - offset.y * scale.y);
+	float x = 12582912.0f + offset.x * scale.x;
+	float y = 12582912.0f - offset.y * scale.y;
 	return vec2(clamp(x, around.x, around.z), clamp(y, around.y, around.w));
 }
 
-// The pixel that nookAcross found.
-ivec2 nookThere(ivec2 pixel, vec2 across)
+// Distance of a pixel near another one: pixels to the right and downward.
+vec2 nookAcross(vec2 near)
 {
-	return ivec2(pixel.x + int(across.x), pixel.y + int(across.y));
+	return vec2(near.x - 12582912.0f, near.y - 12582912.0f);
+}
+
+// A pixel near another one, as in texelFetch.
+ivec2 nookThere(ivec2 pixel, vec2 near)
+{
+	return ivec2(pixel.x - 0x4b400000 + int(floatBitsToUint(near.x)), pixel.y - 0x4b400000 + int(floatBitsToUint(near.y)));
 }
 
 // Number of samples that a pixel takes, from its radius in pixels: those of the first band, of the first two bands, or all.
@@ -185,27 +191,20 @@ int nookCount(float pixels)
 	return 9;
 }
 
-// By how much rounding may have changed a depth, in the unit of the depth. A step of a depth buffer grows with the square of w:
-// nook.depth_step is half a step at w = 1, nook.depth_share is the rounding in proportion to the depth.
-float nookDepthError(float depth)
-{
-	float w = nook.w_slope * depth + nook.w_start;
-	return nook.depth_step * w * w + nook.depth_share * abs(depth);
-}
-
 // By how much the difference of two depths within a radius may be off. Samples are moved back by it; otherwise surfaces would
 // occlude themselves where depths are coarse.
 float nookSlack(float depth, float radius)
 {
-	return nookDepthError(depth) + nookDepthError(depth + radius);
+	float near = nook.w_slope * depth + nook.w_start;
+	float far = nook.w_slope * radius + near;
+	return nook.depth_step * (near * near + far * far) + nook.depth_share * (2.0f * abs(depth) + radius);
 }
 
-// The radius that is used where a metre has a size of `metre` pixels: limited to nook.most_px pixels in the picture, and at least
+// The radius that is used where a pixel spans `pixel` metres: limited to nook.most_px pixels in the picture, and at least
 // nook.least_px.
-float nookRadiusOf(float radius, vec2 metre)
+float nookRadiusOf(float radius, float pixel)
 {
-	float pixels = max(abs(metre.x), abs(metre.y));
-	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
+	return max(min(radius, nook.most_px * pixel), nook.least_px * pixel);
 }
 
 // Visibility of a pixel: ALC eq. 10 with lengths in radii, so that the picture does not depend on the unit of length. With the
@@ -223,7 +222,7 @@ float nookAlchemy(ivec2 pixel)
 	vec2 texel = nookTexel();
 	vec2 step_of = texel * (nook.w_slope * depth + nook.w_start); // size of a pixel at this depth
 	vec2 metre = vec2(1.0f / step_of.x, -1.0f / step_of.y);
-	float radius = nookRadiusOf(nook.radius, metre);
+	float radius = nookRadiusOf(nook.radius, min(abs(step_of.x), abs(step_of.y)));
 	vec2 scale = metre * radius;
 	vec2 turn = texel * nook.w_slope; // by how much the line of sight changes from pixel to pixel
 	vec3 sight = nookSight(pixel);
@@ -239,8 +238,9 @@ float nookAlchemy(ivec2 pixel)
 	for (int i = 0; i < count; ++i)
 	{
 		vec4 point = nookAlchemySample(row, i);
-		vec2 across = nookAcross(around, vec2(point.x, point.y), scale);
-		ivec2 there = nookThere(pixel, across);
+		vec2 near = nookNear(around, vec2(point.x, point.y), scale);
+		vec2 across = nookAcross(near);
+		ivec2 there = nookThere(pixel, near);
 		float surface = 0.0f;
 		surface = nookDepth(there);
 		// The surface lies at (x, y, -deeper). Sky does not occlude: it is so far away that it adds nothing.
@@ -253,7 +253,7 @@ float nookAlchemy(ivec2 pixel)
 		float adds = point.w * inverse * clamp(height * inverse - nook.normal_error, 0.0f, 1.0f);
 		sum += adds;
 	}
-	float open = pow(max(0.0f, 1.0f - 2.0f * nook.sigma * radius * sum), nook.contrast);
+	float open = pow(max(0.0f, 1.0f - nook.sigma * radius * (sum + sum)), nook.contrast);
 	return open;
 }
 

@@ -256,26 +256,32 @@ float nookPlaneRise(vec4 plane, vec2 across, float height)
 	return (beside - height) / max(plane.z - plane.w * beside, 1e-6f);
 }
 
-// First and last pixel that hold depth, relative to a pixel.
+// First and last pixel that hold depth, near a pixel.
 vec4 nookAround(ivec2 pixel)
 {
-	return vec4(float(nook.first.x - pixel.x), float(nook.first.y - pixel.y), float(nook.last.x - pixel.x),
-				float(nook.last.y - pixel.y));
+	return vec4(uintBitsToFloat(uint(nook.first.x + 0x4b400000 - pixel.x)), uintBitsToFloat(uint(nook.first.y + 0x4b400000 - pixel.y)),
+				uintBitsToFloat(uint(nook.last.x + 0x4b400000 - pixel.x)), uintBitsToFloat(uint(nook.last.y + 0x4b400000 - pixel.y)));
 }
 
 // The pixel at `offset` (x to the right, y up, in the unit of `scale`) from the centre of a pixel, moved to the nearest one that
-// holds depth: pixels to the right and downward. around: nookAround.
-vec2 nookAcross(vec4 around, vec2 offset, vec2 scale)
+// holds depth. around: nookAround.
+vec2 nookNear(vec4 around, vec2 offset, vec2 scale)
 {
-	float x = floor(0.5f + offset.x * scale.x);
-	float y = floor(0.5f - offset.y * scale.y);
+	float x = 12582912.0f + offset.x * scale.x;
+	float y = 12582912.0f - offset.y * scale.y;
 	return vec2(clamp(x, around.x, around.z), clamp(y, around.y, around.w));
 }
 
-// The pixel that nookAcross found.
-ivec2 nookThere(ivec2 pixel, vec2 across)
+// Distance of a pixel near another one: pixels to the right and downward.
+vec2 nookAcross(vec2 near)
 {
-	return ivec2(pixel.x + int(across.x), pixel.y + int(across.y));
+	return vec2(near.x - 12582912.0f, near.y - 12582912.0f);
+}
+
+// A pixel near another one, as in texelFetch.
+ivec2 nookThere(ivec2 pixel, vec2 near)
+{
+	return ivec2(pixel.x - 0x4b400000 + int(floatBitsToUint(near.x)), pixel.y - 0x4b400000 + int(floatBitsToUint(near.y)));
 }
 
 // Number of samples that a pixel takes, from its radius in pixels: those of the first band, of the first two bands, or all.
@@ -284,33 +290,27 @@ int nookCount(float pixels)
 	return 9;
 }
 
-// By how much rounding may have changed a depth, in the unit of the depth. A step of a depth buffer grows with the square of w:
-// nook.depth_step is half a step at w = 1, nook.depth_share is the rounding in proportion to the depth.
-float nookDepthError(float depth)
-{
-	float w = nook.w_slope * depth + nook.w_start;
-	return nook.depth_step * w * w + nook.depth_share * abs(depth);
-}
-
 // By how much the difference of two depths within a radius may be off. Samples are moved back by it; otherwise surfaces would
 // occlude themselves where depths are coarse.
 float nookSlack(float depth, float radius)
 {
-	return nookDepthError(depth) + nookDepthError(depth + radius);
+	float near = nook.w_slope * depth + nook.w_start;
+	float far = nook.w_slope * radius + near;
+	return nook.depth_step * (near * near + far * far) + nook.depth_share * (2.0f * abs(depth) + radius);
 }
 
-// The radius that is used where a metre has a size of `metre` pixels: limited to nook.most_px pixels in the picture, and at least
+// The radius that is used where a pixel spans `pixel` metres: limited to nook.most_px pixels in the picture, and at least
 // nook.least_px.
-float nookRadiusOf(float radius, vec2 metre)
+float nookRadiusOf(float radius, float pixel)
 {
-	float pixels = max(abs(metre.x), abs(metre.y));
-	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
+	return max(min(radius, nook.most_px * pixel), nook.least_px * pixel);
 }
 
 // The radius that is used at a depth.
 float nookRadius(float radius, float depth)
 {
-	return nookRadiusOf(radius, nookScale(depth));
+	vec2 metre = nookScale(depth);
+	return nookRadiusOf(radius, 1.0f / max(abs(metre.x), abs(metre.y)));
 }
 
 // Weight of a line of the ball as far as a position, as a share of the whole. The falloff is constant, so that volume alone counts
@@ -338,10 +338,11 @@ vec3 nookVoNormal(ivec2 pixel)
 // slack: nookSlack.
 vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec4 plane, vec4 around, float depth, float radius, float slack, float thick)
 {
-	vec2 across = nookAcross(around, vec2(line.x, line.y), scale);
+	vec2 near = nookNear(around, vec2(line.x, line.y), scale);
+	vec2 across = nookAcross(near);
 	float share = 0.5f / max(line.z * radius, 1e-20f); // a line on the rim of the ball has no length and no weight
 	float end = 1.0f;
-	float away = nookDepth(nookThere(pixel, across)) - depth;
+	float away = nookDepth(nookThere(pixel, near)) - depth;
 	end = clamp(0.5f + share * nookPlaneRise(plane, across, 0.0f), 0.0f, 1.0f);
 	away += slack;
 	float front = 0.5f + share * away;
@@ -401,7 +402,7 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec4 plane, vec4 around, f
 				  float lod, float flat_variance)
 {
 	float reach = sqrt(max(1e-12f, 1.0f - area.x * area.x - area.y * area.y));
-	ivec2 there = nookThere(pixel, nookAcross(around, vec2(area.x, area.y), scale));
+	ivec2 there = nookThere(pixel, nookNear(around, vec2(area.x, area.y), scale));
 	int level = nookAreaLevel(lod, area);
 	if (level == 0)
 	{

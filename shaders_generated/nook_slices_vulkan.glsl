@@ -153,31 +153,31 @@ int nookRow(int y)
 	return nook.across_y.x < 0.0f ? int(2.0f * nook.origin.y + nook.size.y) - 1 - y : y;
 }
 
-// First and last pixel that hold depth, relative to a pixel.
+// First and last pixel that hold depth, near a pixel.
 vec4 nookAround(ivec2 pixel)
 {
-	return vec4(float(nook.first.x - pixel.x), float(nook.first.y - pixel.y), float(nook.last.x - pixel.x),
-				float(nook.last.y - pixel.y));
+	return vec4(uintBitsToFloat(uint(nook.first.x + 0x4b400000 - pixel.x)), uintBitsToFloat(uint(nook.first.y + 0x4b400000 - pixel.y)),
+				uintBitsToFloat(uint(nook.last.x + 0x4b400000 - pixel.x)), uintBitsToFloat(uint(nook.last.y + 0x4b400000 - pixel.y)));
 }
 
-// The pixel that nookAcross found.
-ivec2 nookThere(ivec2 pixel, vec2 across)
+// A pixel near another one, as in texelFetch.
+ivec2 nookThere(ivec2 pixel, vec2 near)
 {
-	return ivec2(pixel.x + int(across.x), pixel.y + int(across.y));
+	return ivec2(pixel.x - 0x4b400000 + int(floatBitsToUint(near.x)), pixel.y - 0x4b400000 + int(floatBitsToUint(near.y)));
 }
 
-// The radius that is used where a metre has a size of `metre` pixels: limited to nook.most_px pixels in the picture, and at least
+// The radius that is used where a pixel spans `pixel` metres: limited to nook.most_px pixels in the picture, and at least
 // nook.least_px.
-float nookRadiusOf(float radius, vec2 metre)
+float nookRadiusOf(float radius, float pixel)
 {
-	float pixels = max(abs(metre.x), abs(metre.y));
-	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
+	return max(min(radius, nook.most_px * pixel), nook.least_px * pixel);
 }
 
 // The radius that is used at a depth.
 float nookRadius(float radius, float depth)
 {
-	return nookRadiusOf(radius, nookScale(depth));
+	vec2 metre = nookScale(depth);
+	return nookRadiusOf(radius, 1.0f / max(abs(metre.x), abs(metre.y)));
 }
 
 // Without a tile: number of a pixel in its window of 4 x 4 cells, 0 to 15, which selects the azimuth of its slices. The numbers
@@ -306,12 +306,14 @@ vec4 nookSlice(ivec2 pixel, float depth, float radius, vec2 scale, vec3 sight, v
 	{
 		vec2 share = start + float(k) / float(4);
 		vec2 place = nearest + (1.0f - nearest) * (share * share * share); // nookSliceStep
-		vec2 wanted_x = floor(way.x * (side * place) + 0.5f);
-		vec2 wanted_y = floor(way.y * (side * place) + 0.5f);
-		vec2 i = clamp(wanted_x, vec2(around.x, around.x), vec2(around.z, around.z));
-		vec2 j = clamp(wanted_y, vec2(around.y, around.y), vec2(around.w, around.w));
-		float positive = nookDepth(nookThere(pixel, vec2(i.x, j.x)));
-		float negative = nookDepth(nookThere(pixel, vec2(i.y, j.y)));
+		vec2 wanted_x = 12582912.0f + way.x * (side * place); // as in nookNear
+		vec2 wanted_y = 12582912.0f + way.y * (side * place);
+		vec2 near_x = clamp(wanted_x, vec2(around.x, around.x), vec2(around.z, around.z));
+		vec2 near_y = clamp(wanted_y, vec2(around.y, around.y), vec2(around.w, around.w));
+		vec2 i = near_x - 12582912.0f;
+		vec2 j = near_y - 12582912.0f;
+		float positive = nookDepth(nookThere(pixel, vec2(near_x.x, near_y.x)));
+		float negative = nookDepth(nookThere(pixel, vec2(near_x.y, near_y.y)));
 		vec2 z = vec2(min(positive, deepest), min(negative, deepest));
 		vec2 at = nook.w_slope * z + nook.w_start;
 		vec2 x = at * (x_of.x * i + x_of.y * j); // exactly 0 for the pixel itself
@@ -332,7 +334,8 @@ vec4 nookSlice(ivec2 pixel, float depth, float radius, vec2 scale, vec3 sight, v
 		uint opposite = ((1u << uint(end.y)) - (1u << uint(first.y))) & open;
 		opposite = z.y < deepest && apart.y < 1.0f && x.y < 0.0f ? opposite : 0u;
 		open = open - opposite;
-		vec2 known = vec2(i.x == wanted_x.x && j.x == wanted_y.x ? 1.0f : 0.5f, i.y == wanted_x.y && j.y == wanted_y.y ? 1.0f : 0.5f);
+		vec2 known = vec2(near_x.x == wanted_x.x && near_y.x == wanted_y.x ? 1.0f : 0.5f,
+						  near_x.y == wanted_x.y && near_y.y == wanted_y.y ? 1.0f : 0.5f);
 		vec2 counts = known * (1.0f - (1.0f / 3.0f + 2.0f / 3.0f * before / place) * distance);
 		before = place;
 		closed += float(nookSliceBitCount(ahead)) * counts.x;

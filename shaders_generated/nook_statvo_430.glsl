@@ -181,18 +181,18 @@ vec2 nookScale(float depth)
 	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
 }
 
-// The radius that is used where a metre has a size of `metre` pixels: limited to nook.most_px pixels in the picture, and at least
+// The radius that is used where a pixel spans `pixel` metres: limited to nook.most_px pixels in the picture, and at least
 // nook.least_px.
-float nookRadiusOf(float radius, vec2 metre)
+float nookRadiusOf(float radius, float pixel)
 {
-	float pixels = max(abs(metre.x), abs(metre.y));
-	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
+	return max(min(radius, nook.most_px * pixel), nook.least_px * pixel);
 }
 
 // The radius that is used at a depth.
 float nookRadius(float radius, float depth)
 {
-	return nookRadiusOf(radius, nookScale(depth));
+	vec2 metre = nookScale(depth);
+	return nookRadiusOf(radius, 1.0f / max(abs(metre.x), abs(metre.y)));
 }
 
 // Half side of the box in metres, limited to nook.largest_px pixels in the picture.

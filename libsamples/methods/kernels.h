@@ -11,6 +11,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "core/round.h"
 #include "methods/block_members.h"
 #include "methods/picture.h"
 
@@ -112,6 +113,15 @@ public:
 		return vec4(range->values[at], range->values[at + 1], range->values[at + 2], range->values[at + 3]);
 	}
 
+	// GLM's versions read a float through an integer pointer, which violates strict aliasing.
+	static uint floatBitsToUint(float value)
+	{
+		return bitsAs<uint>(value);
+	}
+	static float uintBitsToFloat(uint bits)
+	{
+		return bitsAs<float>(bits);
+	}
 	static int bitCount(uint bits)
 	{
 		return std::popcount(bits);

@@ -61,13 +61,26 @@ inline double sizeOf(const Wide& a)
 	return std::fabs(static_cast<double>(a.value));
 }
 
+// A sum with 1.5 * 2^23, near which floats have a spacing of 1, is a whole number (nookNear).
+inline constexpr long double kWholeNumbers = 0x1.8p23L;
+
 inline Wide operator+(const Wide& a, const Wide& b)
 {
+	if (a.value == kWholeNumbers && std::fabs(b.value) < 0x1p22L)
+	{
+		const long double whole = std::nearbyint(b.value);
+		wide_unsure = wide_unsure || std::fabs(static_cast<double>(b.value - whole)) + b.error >= 0.5;
+		return {kWholeNumbers + whole, 0.0};
+	}
 	return rounded(a.value + b.value, a.error + b.error);
+}
+inline Wide operator-(const Wide& a)
+{
+	return {-a.value, a.error};
 }
 inline Wide operator-(const Wide& a, const Wide& b)
 {
-	return rounded(a.value - b.value, a.error + b.error);
+	return a + -b;
 }
 inline Wide operator*(const Wide& a, const Wide& b)
 {
@@ -83,10 +96,6 @@ inline Wide operator/(const Wide& a, const Wide& b)
 		return {quotient, HUGE_VAL};
 	}
 	return rounded(quotient, (a.error + std::fabs(static_cast<double>(quotient)) * b.error) / least);
-}
-inline Wide operator-(const Wide& a)
-{
-	return {-a.value, a.error};
 }
 inline Wide& operator+=(Wide& a, const Wide& b)
 {
@@ -236,6 +245,10 @@ template <int n> WideVec<n> operator-(float s, const WideVec<n>& a)
 {
 	return Wide(s) - a;
 }
+template <int n> WideVec<n> operator-(const WideVec<n>& a, float s)
+{
+	return a - Wide(s);
+}
 template <int n> WideVec<n> sqrt(const WideVec<n>& a)
 {
 	return mapped(a, a, [](const Wide& p, const Wide&) { return sqrt(p); });
@@ -369,6 +382,14 @@ public:
 		return vec4(m_kernels.nookRange(i));
 	}
 
+	static uint floatBitsToUint(const Wide& value)
+	{
+		return bitsAs<uint>(static_cast<decltype(0.0F)>(value.value));
+	}
+	static Wide uintBitsToFloat(uint bits)
+	{
+		return bitsAs<decltype(0.0F)>(bits);
+	}
 	static int bitCount(uint bits)
 	{
 		return shade_kernels::Kernels::bitCount(bits);

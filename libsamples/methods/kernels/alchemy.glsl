@@ -24,7 +24,7 @@ float nookAlchemy(ivec2 pixel)
 	vec2 texel = nookTexel();
 	vec2 step_of = texel * (nook.w_slope * depth + nook.w_start); // size of a pixel at this depth
 	vec2 metre = vec2(1.0f / step_of.x, -1.0f / step_of.y);
-	float radius = nookRadiusOf(nook.radius, metre);
+	float radius = nookRadiusOf(nook.radius, min(abs(step_of.x), abs(step_of.y)));
 	vec2 scale = metre * radius;
 	vec2 turn = texel * nook.w_slope; // by how much the line of sight changes from pixel to pixel
 	vec3 sight = nookSight(pixel);
@@ -40,8 +40,9 @@ float nookAlchemy(ivec2 pixel)
 	for (int i = 0; i < count; ++i)
 	{
 		vec4 point = nookSample(row, i);
-		vec2 across = nookAcross(around, vec2(point.x, point.y), scale);
-		ivec2 there = nookThere(pixel, across);
+		vec2 near = nookNear(around, vec2(point.x, point.y), scale);
+		vec2 across = nookAcross(near);
+		ivec2 there = nookThere(pixel, near);
 		float surface = 0.0f;
 #if NOOK_LEVELS
 		// The sample moves to the pixel that the coarser depth belongs to, so that planes stay planes.
@@ -71,7 +72,7 @@ float nookAlchemy(ivec2 pixel)
 #if NOOK_BANDS > 1
 	sum /= weights;
 #endif
-	float open = pow(max(0.0f, 1.0f - 2.0f * nook.sigma * radius * sum), nook.contrast);
+	float open = pow(max(0.0f, 1.0f - nook.sigma * radius * (sum + sum)), nook.contrast);
 #if NOOK_SHAPED
 	open = nookShaped(open);
 #endif

@@ -90,26 +90,35 @@ float nookPlaneRise(vec4 plane, vec2 across, float height)
 	return (beside - height) / max(plane.z - plane.w * beside, 1e-6f);
 }
 
-// First and last pixel that hold depth, relative to a pixel.
+// Pixels near another one, as floats: 12582912 + the distance. That is 1.5 * 2^23, where floats have a spacing of 1. So adding an
+// offset rounds it, and the bits are those of 12582912 (0x4b400000) + the distance: no instruction rounds or converts.
+
+// First and last pixel that hold depth, near a pixel.
 vec4 nookAround(ivec2 pixel)
 {
-	return vec4(float(nook.first.x - pixel.x), float(nook.first.y - pixel.y), float(nook.last.x - pixel.x),
-				float(nook.last.y - pixel.y));
+	return vec4(uintBitsToFloat(uint(nook.first.x + 0x4b400000 - pixel.x)), uintBitsToFloat(uint(nook.first.y + 0x4b400000 - pixel.y)),
+				uintBitsToFloat(uint(nook.last.x + 0x4b400000 - pixel.x)), uintBitsToFloat(uint(nook.last.y + 0x4b400000 - pixel.y)));
 }
 
 // The pixel at `offset` (x to the right, y up, in the unit of `scale`) from the centre of a pixel, moved to the nearest one that
-// holds depth: pixels to the right and downward. around: nookAround.
-vec2 nookAcross(vec4 around, vec2 offset, vec2 scale)
+// holds depth. around: nookAround.
+vec2 nookNear(vec4 around, vec2 offset, vec2 scale)
 {
-	float x = floor(0.5f + offset.x * scale.x);
-	float y = floor(0.5f - offset.y * scale.y);
+	float x = 12582912.0f + offset.x * scale.x;
+	float y = 12582912.0f - offset.y * scale.y;
 	return vec2(clamp(x, around.x, around.z), clamp(y, around.y, around.w));
 }
 
-// The pixel that nookAcross found.
-ivec2 nookThere(ivec2 pixel, vec2 across)
+// Distance of a pixel near another one: pixels to the right and downward.
+vec2 nookAcross(vec2 near)
 {
-	return ivec2(pixel.x + int(across.x), pixel.y + int(across.y));
+	return vec2(near.x - 12582912.0f, near.y - 12582912.0f);
+}
+
+// A pixel near another one, as in texelFetch.
+ivec2 nookThere(ivec2 pixel, vec2 near)
+{
+	return ivec2(pixel.x - 0x4b400000 + int(floatBitsToUint(near.x)), pixel.y - 0x4b400000 + int(floatBitsToUint(near.y)));
 }
 
 // Number of samples that a pixel takes, from its radius in pixels: those of the first band, of the first two bands, or all.

@@ -28,19 +28,21 @@ float nookDepthError(float depth)
 // occlude themselves where depths are coarse.
 float nookSlack(float depth, float radius)
 {
-	return nookDepthError(depth) + nookDepthError(depth + radius);
+	float near = nook.w_slope * depth + nook.w_start;
+	float far = nook.w_slope * radius + near;
+	return nook.depth_step * (near * near + far * far) + nook.depth_share * (2.0f * abs(depth) + radius);
 }
 
-// The radius that is used where a metre has a size of `metre` pixels: limited to nook.most_px pixels in the picture, and at least
+// The radius that is used where a pixel spans `pixel` metres: limited to nook.most_px pixels in the picture, and at least
 // nook.least_px.
-float nookRadiusOf(float radius, vec2 metre)
+float nookRadiusOf(float radius, float pixel)
 {
-	float pixels = max(abs(metre.x), abs(metre.y));
-	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
+	return max(min(radius, nook.most_px * pixel), nook.least_px * pixel);
 }
 
 // The radius that is used at a depth.
 float nookRadius(float radius, float depth)
 {
-	return nookRadiusOf(radius, nookScale(depth));
+	vec2 metre = nookScale(depth);
+	return nookRadiusOf(radius, 1.0f / max(abs(metre.x), abs(metre.y)));
 }

@@ -240,12 +240,14 @@ vec4 nookSlice(ivec2 pixel, float depth, float radius, vec2 scale, vec3 sight, v
 	{
 		vec2 share = start + float(k) / float(NOOK_STEPS);
 		vec2 place = nearest + (1.0f - nearest) * (share * share * share); // nookSliceStep
-		vec2 wanted_x = floor(way.x * (side * place) + 0.5f);
-		vec2 wanted_y = floor(way.y * (side * place) + 0.5f);
-		vec2 i = clamp(wanted_x, vec2(around.x, around.x), vec2(around.z, around.z));
-		vec2 j = clamp(wanted_y, vec2(around.y, around.y), vec2(around.w, around.w));
-		float positive = nookDepth(nookThere(pixel, vec2(i.x, j.x)));
-		float negative = nookDepth(nookThere(pixel, vec2(i.y, j.y)));
+		vec2 wanted_x = 12582912.0f + way.x * (side * place); // as in nookNear
+		vec2 wanted_y = 12582912.0f + way.y * (side * place);
+		vec2 near_x = clamp(wanted_x, vec2(around.x, around.x), vec2(around.z, around.z));
+		vec2 near_y = clamp(wanted_y, vec2(around.y, around.y), vec2(around.w, around.w));
+		vec2 i = near_x - 12582912.0f;
+		vec2 j = near_y - 12582912.0f;
+		float positive = nookDepth(nookThere(pixel, vec2(near_x.x, near_y.x)));
+		float negative = nookDepth(nookThere(pixel, vec2(near_x.y, near_y.y)));
 		vec2 z = vec2(min(positive, deepest), min(negative, deepest));
 		vec2 at = nook.w_slope * z + nook.w_start;
 		vec2 x = at * (x_of.x * i + x_of.y * j); // exactly 0 for the pixel itself
@@ -266,7 +268,8 @@ vec4 nookSlice(ivec2 pixel, float depth, float radius, vec2 scale, vec3 sight, v
 		uint opposite = ((1u << uint(end.y)) - (1u << uint(first.y))) & open;
 		opposite = z.y < deepest && apart.y < 1.0f && x.y < 0.0f ? opposite : 0u;
 		open = open - opposite;
-		vec2 known = vec2(i.x == wanted_x.x && j.x == wanted_y.x ? 1.0f : 0.5f, i.y == wanted_x.y && j.y == wanted_y.y ? 1.0f : 0.5f);
+		vec2 known = vec2(near_x.x == wanted_x.x && near_y.x == wanted_y.x ? 1.0f : 0.5f,
+						  near_x.y == wanted_x.y && near_y.y == wanted_y.y ? 1.0f : 0.5f);
 		vec2 counts = known * (1.0f - (1.0f / 3.0f + 2.0f / 3.0f * before / place) * distance);
 		before = place;
 		closed += float(nookSliceBitCount(ahead)) * counts.x;

@@ -42,10 +42,11 @@ vec3 nookVoNormal(ivec2 pixel)
 // slack: nookSlack.
 vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec4 plane, vec4 around, float depth, float radius, float slack, float thick)
 {
-	vec2 across = nookAcross(around, vec2(line.x, line.y), scale);
+	vec2 near = nookNear(around, vec2(line.x, line.y), scale);
+	vec2 across = nookAcross(near);
 	float share = 0.5f / max(line.z * radius, 1e-20f); // a line on the rim of the ball has no length and no weight
 	float end = 1.0f;
-	float away = nookDepth(nookThere(pixel, across)) - depth;
+	float away = nookDepth(nookThere(pixel, near)) - depth;
 #if NOOK_USE_NORMAL
 	end = clamp(0.5f + share * nookPlaneRise(plane, across, 0.0f), 0.0f, 1.0f);
 	away += slack;
@@ -77,9 +78,10 @@ vec3 nookVoPointAt(ivec2 pixel, vec4 point, vec2 scale, vec3 n, vec4 plane, vec4
 		above = -above;
 	}
 #endif
-	vec2 across = nookAcross(around, vec2(p.x, p.y), scale);
+	vec2 near = nookNear(around, vec2(p.x, p.y), scale);
+	vec2 across = nookAcross(near);
 	float behind = -radius * p.z; // how much deeper than the pixel the point lies
-	float front = nookDepth(nookThere(pixel, across)) - depth;
+	float front = nookDepth(nookThere(pixel, near)) - depth;
 #if NOOK_USE_NORMAL
 	// The depth at the same height above the tangent plane, on the line of sight through the centre of that pixel.
 	behind = nookPlaneRise(plane, across, radius * above);

@@ -110,7 +110,7 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec4 plane, vec4 around, f
 				  float lod, float flat_variance)
 {
 	float reach = sqrt(max(1e-12f, 1.0f - area.x * area.x - area.y * area.y));
-	ivec2 there = nookThere(pixel, nookAcross(around, vec2(area.x, area.y), scale));
+	ivec2 there = nookThere(pixel, nookNear(around, vec2(area.x, area.y), scale));
 	int level = nookAreaLevel(lod, area);
 	if (level == 0)
 	{

@@ -43,7 +43,7 @@ f 4/1 3/2 2/3 1/4
 f 1/5 2/6 6/7 5/8
 EOT
 "$nook" bake charts.obj --radius 0.5 --rays 16 --texture 32 -o texture.glb --json s.json || problem "bake --texture"
-"$nook" bake builtin:suburb --radius 1.5 --rays 16 --auto -o auto.glb --json s.json || problem "bake --auto"
+"$nook" bake builtin:cornell --radius 0.5 --rays 16 --auto -o auto.glb --json s.json || problem "bake --auto"
 grep -q '"kind": "texture", "triangles": [1-9]' s.json || problem "bake --auto: found no texture in $(cat s.json)"
 checks=$((checks + 13))
 (cd "$cache" && node validate.js "$folder"/*.glb) >log 2>&1 || problem "$(cat log)"

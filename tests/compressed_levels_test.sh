@@ -6,20 +6,10 @@ nook=$1
 source=$2
 cache=$3
 . "$(dirname "$0")/command_line.sh"
+. "$(dirname "$0")/npm_tools.sh"
 
-skip()
-{
-	echo "skipped: $*" >&2
-	exit 77
-}
-
-command -v node >/dev/null && command -v npm >/dev/null || skip "found no node or no npm, expected both (scripts/setup.sh)"
-mkdir -p "$cache" && cp "$source"/tests/gltf_transform/* "$cache" || exit 1
-if ! [ -e "$cache/installed" ]; then
-	(cd "$cache" && timeout 120 npm ci --no-audit --no-fund --ignore-scripts --fetch-retries 1 --fetch-timeout 30000) >"$folder/log" 2>&1 ||
-		skip "npm could not install glTF-Transform: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
-	touch "$cache/installed" # only once everything is installed
-fi
+npm_packages "$cache" @gltf-transform/core@4.2.1 @gltf-transform/extensions@4.2.1 @gltf-transform/functions@4.2.1 draco3dgltf@1.5.7 meshoptimizer@0.22.0
+cp "$source"/tests/gltf_transform/*.mjs "$cache" || exit 1
 
 # same EXPECTED FOUND SHARE
 same()

@@ -2,13 +2,11 @@
 // A glTF of one cube, for tests to modify.
 #pragma once
 
-#include "core/error.h"
-
 #include "level_files.h"
 #include "temporary_folder.h"
+#include "testing.h"
 
-#include <string>
-#include <vector>
+#include "core/error.h"
 
 namespace nook
 {

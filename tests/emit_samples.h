@@ -2,14 +2,12 @@
 // Hand-made patterns and tiles for the tests of emission: independent of generators, with awkward bits.
 #pragma once
 
+#include "testing.h"
+
 #include "core/file.h"
 #include "core/random.h"
 #include "core/round.h"
 #include "format/pattern_file.h"
-
-#include <glm/geometric.hpp>
-
-#include <cmath>
 
 namespace nook::test
 {

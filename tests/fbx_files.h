@@ -2,19 +2,16 @@
 // FBX files for tests: a tree of nodes that can be written as ASCII or binary, and the objects of a small scene.
 #pragma once
 
-#include "core/decimal.h"
-
 #include "level_files.h"
+#include "testing.h"
+
+#include "core/decimal.h"
 
 #include <zlib.h>
 
-#include <algorithm>
 #include <initializer_list>
 #include <list>
-#include <string>
-#include <utility>
 #include <variant>
-#include <vector>
 
 namespace nook
 {

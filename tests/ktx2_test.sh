@@ -6,20 +6,10 @@ nook=$1
 source=$2
 cache=$3
 . "$(dirname "$0")/table.sh"
+. "$(dirname "$0")/npm_tools.sh"
 
-skip()
-{
-	echo "skipped: $*" >&2
-	exit 77
-}
-
-command -v node >/dev/null && command -v npm >/dev/null || skip "found no node or no npm, expected both (scripts/setup.sh)"
-mkdir -p "$cache" && cp "$source"/tests/ktx_parse/* "$cache" || exit 1
-if ! [ -e "$cache/installed" ]; then
-	(cd "$cache" && timeout 120 npm ci --no-audit --no-fund --ignore-scripts --fetch-retries 1 --fetch-timeout 30000) >"$folder/log" 2>&1 ||
-		skip "npm could not install ktx-parse: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
-	touch "$cache/installed" # only once everything is installed
-fi
+npm_packages "$cache" ktx-parse@2.0.0
+cp "$source"/tests/ktx_parse/*.js "$cache" || exit 1
 
 # reads NAME SIZE WORDS: NAME.ktx2 is the texture of NAME.json, has that size, and describes its layout with those words.
 reads()

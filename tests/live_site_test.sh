@@ -16,7 +16,7 @@ for tool in idiff python3; do
 	command -v "$tool" >/dev/null || skip "found no $tool, expected Debian's packages openimageio-tools and python3"
 done
 [ -s "$npm/nook.wasm" ] || skip "found no $npm/nook.wasm, expected the npm package of the preset wasm"
-npm_tools "$source" "$cache"
+npm_tools "$cache"
 modules=$cache/node_modules
 cd "$folder"
 

@@ -14,7 +14,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 for tool in idiff oiiotool; do
 	command -v "$tool" >/dev/null || skip "found no $tool, expected Debian's package openimageio-tools"
 done
-npm_tools "$source" "$cache"
+npm_tools "$cache"
 checks=$((checks + 1))
 sh "$source/npm/ao/pack.sh" "$nook" "$folder/nook-ao" >"$folder/log" 2>&1 || problem "pack.sh: $(tail -n 5 "$folder/log")"
 linted "$folder/nook-ao" --profile esm-only

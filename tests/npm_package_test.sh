@@ -12,11 +12,11 @@ here=$(cd "$(dirname "$0")" && pwd)
 . "$here/npm_tools.sh"
 
 [ -s "$npm/nook.wasm" ] || skip "found no $npm/nook.wasm, expected the npm package of the preset wasm"
-npm_tools "$source" "$cache"
+npm_tools "$cache"
 linted "$npm"
 
 # An application with the package installed from its file.
-application "$source/tests/npm_bundlers/app" "$npm"
+application "$source/tests/npm_app" "$npm"
 
 # served NAME COMMAND…: starts a server, and checks its page.
 served()

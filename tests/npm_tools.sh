@@ -8,21 +8,29 @@ skip()
 	exit 77
 }
 
-# npm_tools SOURCE CACHE: installs tests/npm_bundlers from npm's registry into CACHE, once, links it into $folder, and sets $tools.
+# npm_packages FOLDER PACKAGE@VERSION…: installs packages from npm's registry into FOLDER, once. What they depend on has the versions
+# that this day had: a version never changes once it is published.
+npm_packages()
+{
+	cache=$1
+	shift
+	command -v node >/dev/null && command -v npm >/dev/null || skip "found no node or no npm, expected both (scripts/setup.sh)"
+	mkdir -p "$cache" && cache=$(realpath "$cache") || exit 1
+	if [ "$(cat "$cache/installed" 2>/dev/null)" != "$*" ]; then
+		rm -rf "$cache/node_modules" "$cache"/package*.json
+		(cd "$cache" && timeout 300 npm install --before=2026-11-12 --no-audit --no-fund --ignore-scripts --fetch-retries 1 --fetch-timeout 30000 "$@") \
+			>"$folder/log" 2>&1 || skip "npm could not install $*: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
+		echo "$*" >"$cache/installed" # only once everything is installed
+	fi
+}
+
+# npm_tools CACHE: installs bundlers and linters, and the packages that nook-ao works with, links them into $folder, and sets $tools.
 npm_tools()
 {
-	for tool in "$browser" node npm; do
-		command -v "$tool" >/dev/null || skip "found no ${tool:-chromium}, expected Debian's packages chromium, nodejs and npm (scripts/setup.sh)"
-	done
-	mkdir -p "$2" || exit 1
-	if ! cmp -s "$1/tests/npm_bundlers/package-lock.json" "$2/installed"; then
-		cp "$1"/tests/npm_bundlers/package*.json "$2" || exit 1
-		(cd "$2" && timeout 300 npm ci --no-audit --no-fund --ignore-scripts --fetch-retries 1 --fetch-timeout 30000) >"$folder/log" 2>&1 ||
-			skip "npm could not install the packages of tests/npm_bundlers: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
-		cp "$2/package-lock.json" "$2/installed" # only once everything is installed
-	fi
-	ln -s "$2/node_modules" "$folder/node_modules"
-	tools="$2/node_modules/.bin"
+	[ -n "$browser" ] || skip "found no chromium, expected Debian's package chromium (scripts/setup.sh)"
+	npm_packages "$1" @arethetypeswrong/cli@0.18.5 esbuild@0.28.2 postprocessing@6.39.6 publint@0.3.25 three@0.187.0 vite@8.3.8
+	ln -s "$cache/node_modules" "$folder/node_modules"
+	tools="$cache/node_modules/.bin"
 }
 
 # linted PACKAGE OPTIONS…: checks a package with publint and attw, which gets the options, and that publint notices missing types.

@@ -3,13 +3,9 @@
 #pragma once
 
 #include "temporary_folder.h"
+#include "testing.h"
 
 #include "core/file.h"
-
-#include <catch2/catch.hpp>
-
-#include <cstdlib>
-#include <string>
 
 namespace nook::test
 {

@@ -2,12 +2,9 @@
 // Errors between pictures.
 #pragma once
 
+#include "testing.h"
+
 #include "scene/reference.h"
-
-#include <catch2/catch.hpp>
-
-#include <cmath>
-#include <vector>
 
 namespace nook::test
 {

@@ -2,14 +2,10 @@
 // Volumes of random polygons, and comparison of two sets.
 #pragma once
 
+#include "testing.h"
+
 #include "core/random.h"
 #include "volume/volumes.h"
-
-#include <glm/geometric.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
 
 namespace nook::test
 {

@@ -2,15 +2,10 @@
 // Small pictures from a formula, and straightforward reference implementations of the errors between them.
 #pragma once
 
+#include "testing.h"
+
 #include "core/random.h"
 #include "image/compare.h"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <vector>
 
 namespace nook
 {

@@ -3,14 +3,11 @@
 #pragma once
 
 #include "small_views.h"
+#include "testing.h"
 
 #include "methods/block.h"
 
 #include <glm/common.hpp>
-
-#include <array>
-#include <cmath>
-#include <vector>
 
 namespace nook::test
 {

@@ -2,14 +2,11 @@
 // Projections of every kind, and G-buffers from a formula.
 #pragma once
 
+#include "testing.h"
+
 #include "scene/gbuffer.h"
 
-#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-
-#include <functional>
-#include <limits>
-#include <vector>
 
 namespace nook
 {

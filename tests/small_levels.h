@@ -2,12 +2,10 @@
 // Levels of a few surfaces, for tests with closed forms.
 #pragma once
 
+#include "testing.h"
+
 #include "core/math.h"
 #include "scene/level.h"
-
-#include <glm/geometric.hpp>
-
-#include <cmath>
 
 namespace nook::test
 {

@@ -3,21 +3,14 @@
 #pragma once
 
 #include "emit_samples.h"
+#include "nook_vo9.h"
+#include "testing.h"
 
 #include "emit/module.h"
 #include "methods/block.h"
 #include "methods/method_table.h"
 #include "methods/passes.h"
 #include "scene/gbuffer.h"
-
-#include "nook_vo9.h"
-
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <cstring>
-#include <string>
-#include <vector>
 
 namespace nook::test
 {

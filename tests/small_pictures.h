@@ -2,12 +2,12 @@
 // Ray-traced statistics of small pictures.
 #pragma once
 
+#include "testing.h"
+
 #include "scene/camera.h"
 #include "scene/tracer.h"
 
 #include <glm/matrix.hpp>
-
-#include <limits>
 
 namespace nook
 {

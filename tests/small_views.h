@@ -2,14 +2,11 @@
 // G-buffers for tests of methods: planes, and built-in levels.
 #pragma once
 
+#include "testing.h"
+
 #include "core/math.h"
 #include "scene/builtin.h"
 #include "scene/gbuffer.h"
-
-#include <glm/geometric.hpp>
-
-#include <limits>
-#include <string>
 
 namespace nook::test
 {

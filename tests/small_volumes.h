@@ -2,6 +2,8 @@
 // Volumes of small levels, and a straightforward reference evaluation.
 #pragma once
 
+#include "testing.h"
+
 #include "methods/volume_kernels.h"
 #include "scene/builtin.h"
 #include "scene/gbuffer.h"
@@ -9,12 +11,7 @@
 #include "volume/packed.h"
 #include "volume/volumes.h"
 
-#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-
-#include <cmath>
-#include <string>
-#include <vector>
 
 namespace nook::test
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "picture_errors.h"
 #include "small_volumes.h"
+#include "testing.h"
 
 #include "core/random.h"
 #include "image/compare.h"
@@ -9,17 +10,6 @@
 #include "scene/reference.h"
 #include "shade/shade.h"
 #include "volume/evaluate.h"
-
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <string>
-#include <vector>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

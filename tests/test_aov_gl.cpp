@@ -2,19 +2,13 @@
 // Volumes drawn by OpenGL compared with a reference that evaluates every volume at every pixel.
 #include "small_gbuffers.h"
 #include "small_volumes.h"
+#include "testing.h"
 
 #include "core/error.h"
 #include "shade/aov_gl_parts.h"
 #include "volume/evaluate.h"
 
-#include <catch2/catch.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-
-#include <algorithm>
-#include <string>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

@@ -2,6 +2,7 @@
 // Visibility at vertices compared with closed forms and with rays.
 #include "bake_levels.h"
 #include "temporary_folder.h"
+#include "testing.h"
 
 #include "bake/bake.h"
 #include "bake/probes.h"
@@ -13,18 +14,7 @@
 #include "scene/level_glb.h"
 #include "scene/load.h"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <string>
-#include <vector>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {
@@ -199,19 +189,6 @@ TEST_CASE("bake: the fit is nearer to rays than values at the vertices, with as 
 {
 	const LoadedLevel loaded = loadLevel("builtin:cornell", {}, {});
 	CHECK(rmseOf(loaded.level, within(0.5), BakeFit::surface) < 0.6 * rmseOf(loaded.level, within(0.5), BakeFit::points));
-}
-
-TEST_CASE("bake: one thread and two give the same values; another seed gives others", "[bake]")
-{
-	const LoadedLevel loaded = loadLevel("builtin:cornell", {}, {});
-	const Tracer tracer(loaded.level, {});
-	BakeSettings settings = within(0.5);
-	const VertexBake one = bakeVertices(tracer, settings, {1, {}});
-	const VertexBake two = bakeVertices(tracer, settings, {2, {}});
-	CHECK(one.visibility == two.visibility);
-	CHECK(one.standard_error == two.standard_error);
-	settings.seed = 2;
-	CHECK(bakeVertices(tracer, settings, {2, {}}).visibility != one.visibility);
 }
 
 TEST_CASE("bake: the stated standard error is what other seeds differ by", "[bake]")

@@ -3,6 +3,7 @@
 #include "bake_levels.h"
 #include "level_files.h"
 #include "temporary_folder.h"
+#include "testing.h"
 
 #include "bake/bake.h"
 #include "bake/texture.h"
@@ -11,18 +12,7 @@
 #include "scene/load.h"
 #include "scene/load_parts.h"
 
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <string>
 #include <tuple>
-#include <vector>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

@@ -1,24 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Charts: no overlaps, no folds, little stretch, for clean meshes and for broken ones.
 #include "bake_levels.h"
+#include "testing.h"
 
 #include "bake/unwrap.h"
 #include "core/error.h"
 #include "core/math.h"
 #include "core/random.h"
-
-#include <glm/geometric.hpp>
-
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numeric>
-#include <vector>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "testing.h"
+
 #include "core/math.h"
 #include "pattern/cells.h"
 #include "pattern/energy.h"
 #include "pattern/energy_kernels.h"
 #include "pattern/methods.h"
-
-#include <catch2/catch.hpp>
-#include <glm/geometric.hpp>
-
-#include <algorithm>
-#include <numeric>
-
-using namespace nook;
 
 namespace
 {

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slow_errors.h"
+#include "testing.h"
 
 #include "core/error.h"
 #include "image/compare.h"
 #include "image/drawing.h"
 #include "image/visibility_image.h"
-
-#include <catch2/catch.hpp>
-
-#include <array>
-#include <cmath>
-#include <limits>
-#include <vector>
-
-using namespace nook;
 
 namespace
 {
@@ -186,25 +178,6 @@ TEST_CASE("measure: small pictures have no SSIM, the other errors they have", "[
 	CHECK_FALSE(c.ssim.has_value());
 	CHECK_FALSE(errorBy(c, ErrorMetric::ssim).has_value());
 	CHECK(c.flip > 0.9);
-}
-
-TEST_CASE("measure: a comparison is the same on any number of threads", "[compare]")
-{
-	const Picture test = noise(70, 150, 5);
-	const Picture reference = noise(70, 150, 6);
-	RunSettings run;
-	const Comparison one = compareImages(test.plane(), reference.plane(), {}, run);
-	for (const int threads : {2, 7})
-	{
-		run.threads = threads;
-		const Comparison many = compareImages(test.plane(), reference.plane(), {}, run);
-		CHECK(many.rmse == one.rmse);
-		CHECK(many.mae == one.mae);
-		CHECK(many.mean_error == one.mean_error);
-		CHECK(many.ssim == one.ssim);
-		CHECK(many.flip == one.flip);
-		CHECK(many.eq14 == one.eq14);
-	}
 }
 
 TEST_CASE("measure: which channel is the visibility", "[compare]")

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "temporary_folder.h"
+#include "testing.h"
 
 #include "core/decimal.h"
 #include "core/error.h"
@@ -12,21 +13,10 @@
 #include "core/remaining_time.h"
 #include "core/round.h"
 
-#include <catch2/catch.hpp>
 #include <sys/wait.h>
 
-#include <array>
 #include <atomic>
-#include <cmath>
 #include <csignal>
-#include <filesystem>
-#include <functional>
-#include <limits>
-#include <numeric>
-#include <set>
-#include <string>
-
-using namespace nook;
 
 namespace
 {

@@ -1,33 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pattern and tile files from other programs, broken or hostile.
-#include "core/error.h"
 #include "emit_samples.h"
+#include "testing.h"
+
+#include "core/error.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
 
-#include <catch2/catch.hpp>
-
-using namespace nook;
-using namespace nook::test;
-
 namespace
 {
-
-// The message of the invalid_input error that `read` throws, which must be one line, or "" if it throws none.
-template <class Read> std::string messageOf(const Read& read)
-{
-	try
-	{
-		read();
-	}
-	catch (const Error& error)
-	{
-		CHECK(error.code() == ExitCode::invalid_input);
-		CHECK(std::string(error.what()).find_first_of("\n\r") == std::string::npos);
-		return error.what();
-	}
-	return "";
-}
 
 struct Wrong
 {
@@ -56,7 +37,7 @@ TEST_CASE("JSON input: every truncation of a pattern and of a tile is an error o
 	const std::string text = patternJson(pattern, &recipe, awkwardQuality(), contextOf("nook é"));
 	for (std::size_t size = 0; size + 2 < text.size(); ++size) // complete except for the last newline
 	{
-		if (messageOf([&] { parsePatternJson(text.substr(0, size), "p.json"); }).find("p.json: line ") != 0)
+		if (refusalBy([&] { parsePatternJson(text.substr(0, size), "p.json"); }).find("p.json: line ") != 0)
 		{
 			FAIL("truncated to " << size);
 		}
@@ -64,7 +45,7 @@ TEST_CASE("JSON input: every truncation of a pattern and of a tile is an error o
 	const std::string tile = tileJson(scatteredTile(Domain::disk, 2, 2, true), nullptr, {}, contextOf("nook tile"));
 	for (std::size_t size = 0; size + 2 < tile.size(); ++size)
 	{
-		if (messageOf([&] { parseTileJson(tile.substr(0, size), "t.json"); }).find("t.json: line ") != 0)
+		if (refusalBy([&] { parseTileJson(tile.substr(0, size), "t.json"); }).find("t.json: line ") != 0)
 		{
 			FAIL("truncated to " << size);
 		}
@@ -81,7 +62,7 @@ TEST_CASE("JSON input: one byte changed is a pattern or an error, never anything
 	{
 		std::string changed = text;
 		changed[random.below(static_cast<uint32_t>(text.size()))] = static_cast<char>(random.below(256));
-		messageOf([&] { parsePatternJson(changed, "p.json"); });
+		refusalBy([&] { parsePatternJson(changed, "p.json"); });
 	}
 }
 
@@ -161,7 +142,7 @@ TEST_CASE("JSON input: what is wrong is named", "[emit]")
 	for (const Wrong& wrong : table)
 	{
 		INFO(wrong.text);
-		const std::string message = messageOf([&] { parsePatternJson(wrong.text, "p.json"); });
+		const std::string message = refusalBy([&] { parsePatternJson(wrong.text, "p.json"); });
 		INFO(message);
 		CHECK(message.find("p.json: ") == 0);
 		CHECK(message.find(wrong.message) != std::string::npos);
@@ -172,11 +153,11 @@ TEST_CASE("JSON input: what is wrong is named", "[emit]")
 	{
 		many += i == 0 ? "[0, 0]" : ", [0, 0]";
 	}
-	CHECK(messageOf([&] { parsePatternJson(many + "]}", "p.json"); }).find("an array of 4097") != std::string::npos);
+	CHECK(refusalBy([&] { parsePatternJson(many + "]}", "p.json"); }).find("an array of 4097") != std::string::npos);
 	const std::string deep(200000, '[');
-	CHECK(messageOf([&] { parsePatternJson(deep, "p.json"); }).find("column 200001") != std::string::npos);
+	CHECK(refusalBy([&] { parsePatternJson(deep, "p.json"); }).find("column 200001") != std::string::npos);
 	const std::string nested = deep + std::string(200000, ']');
-	CHECK_FALSE(messageOf([&] { parsePatternJson(nested, "p.json"); }).empty());
+	CHECK_FALSE(refusalBy([&] { parsePatternJson(nested, "p.json"); }).empty());
 }
 
 TEST_CASE("tile input: what is wrong is named", "[emit]")
@@ -187,7 +168,7 @@ TEST_CASE("tile input: what is wrong is named", "[emit]")
 	TileQuality quality;
 	quality.window = 0.0;
 	const std::string ours = tileJson(scatteredTile(Domain::disk, 2, 2, true), &recipe, quality, contextOf("nook tile"));
-	REQUIRE(messageOf([&] { parseTileJson(ours, "t.json"); }).empty());
+	REQUIRE(refusalBy([&] { parseTileJson(ours, "t.json"); }).empty());
 	const std::vector<Wrong> table{
 		{"{}", "schema: found nothing"},
 		{R"({"schema": "nook.pattern/1"})", "expected \"nook.tile/1\""},
@@ -202,7 +183,7 @@ TEST_CASE("tile input: what is wrong is named", "[emit]")
 	};
 	for (const Wrong& wrong : table)
 	{
-		const std::string message = messageOf([&] { parseTileJson(wrong.text, "t.json"); });
+		const std::string message = refusalBy([&] { parseTileJson(wrong.text, "t.json"); });
 		INFO(message);
 		CHECK(message.find("t.json: ") == 0);
 		CHECK(message.find(wrong.message) != std::string::npos);
@@ -249,7 +230,7 @@ TEST_CASE("tile input: filters, frames and moves come back, and what is wrong wi
 	};
 	for (const Wrong& wrong : table)
 	{
-		const std::string message = messageOf([&] { parseTileJson(wrong.text, "t.json"); });
+		const std::string message = refusalBy([&] { parseTileJson(wrong.text, "t.json"); });
 		INFO(message);
 		CHECK(message.find("t.json: ") == 0);
 		CHECK(message.find(wrong.message) != std::string::npos);
@@ -276,7 +257,7 @@ TEST_CASE("filter input: taps of a file, and what is wrong is named", "[emit]")
 	};
 	for (const Wrong& wrong : table)
 	{
-		const std::string message = messageOf([&] { parseFilter(wrong.text, "k.json"); });
+		const std::string message = refusalBy([&] { parseFilter(wrong.text, "k.json"); });
 		INFO(message);
 		CHECK(message.find("k.json: ") == 0);
 		CHECK(message.find(wrong.message) != std::string::npos);
@@ -333,17 +314,17 @@ TEST_CASE("CSV input: what is wrong is named by its row", "[emit]")
 	for (const Wrong& wrong : table)
 	{
 		INFO(wrong.text);
-		const std::string message = messageOf([&] { parsePatternCsv(wrong.text, "p.csv"); });
+		const std::string message = refusalBy([&] { parsePatternCsv(wrong.text, "p.csv"); });
 		INFO(message);
 		CHECK(message.find("p.csv: ") == 0);
 		CHECK(message.find(wrong.message) != std::string::npos);
 	}
-	CHECK(messageOf([] { parsePatternCsv("# domain: ball\n0,0,0\n", "p.csv", Domain::disk); })
+	CHECK(refusalBy([] { parsePatternCsv("# domain: ball\n0,0,0\n", "p.csv", Domain::disk); })
 			  .find("expected \"disk\" as asked for") != std::string::npos);
 	std::string many;
 	for (int i = 0; i < 4097; ++i)
 	{
 		many += "0,0\n";
 	}
-	CHECK(messageOf([&] { parsePatternCsv(many, "p.csv"); }).find("row 4097: found more samples") != std::string::npos);
+	CHECK(refusalBy([&] { parsePatternCsv(many, "p.csv"); }).find("row 4097: found more samples") != std::string::npos);
 }

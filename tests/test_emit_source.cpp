@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Emitted C headers, GLSL and HLSL: their numbers, their names, and whether they compile.
-#include "core/error.h"
-#include "core/file.h"
 #include "emit_samples.h"
-#include "format/arrays.h"
-#include "format/pattern_file.h"
 #include "other_tools.h"
 #include "temporary_folder.h"
+#include "testing.h"
 
-#include <catch2/catch.hpp>
-
-#include <cstdlib>
-#include <cstring>
-
-using namespace nook;
-using namespace nook::test;
+#include "core/error.h"
+#include "core/file.h"
+#include "format/arrays.h"
+#include "format/pattern_file.h"
 
 namespace
 {

@@ -2,6 +2,7 @@
 // The report on time and error: front, cache, baseline, JSON, page.
 #include "small_levels.h"
 #include "temporary_folder.h"
+#include "testing.h"
 
 #include "core/base64.h"
 #include "core/content_hash.h"
@@ -14,15 +15,6 @@
 #include "study/error_points.h"
 #include "study/error_report.h"
 #include "study/measure_view.h"
-
-#include <catch2/catch.hpp>
-
-#include <filesystem>
-#include <memory>
-#include <set>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

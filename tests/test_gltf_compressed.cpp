@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // glTF extensions that change how triangles and masks are stored.
 #include "cube_gltf.h"
+#include "testing.h"
 
 #include "core/image_codec.h"
 #include "format/arrays.h"
-
-#include <catch2/catch.hpp>
 
 #if NOOK_HAS_DRACO
 #include <draco/compression/encode.h>

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Picture files with large demands: a picture, or one error, within bounded time.
-#include "core/error.h"
-#include "core/image_codec.h"
-#include "core/isolate.h"
-
 #include "hostile_pictures.h"
 #include "level_files.h"
 #include "temporary_folder.h"
+#include "testing.h"
 
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-
-using namespace nook;
+#include "core/error.h"
+#include "core/image_codec.h"
+#include "core/isolate.h"
 
 namespace
 {

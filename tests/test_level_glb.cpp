@@ -2,15 +2,10 @@
 #include "level_files.h"
 #include "small_levels.h"
 #include "temporary_folder.h"
+#include "testing.h"
 
 #include "scene/builtin.h"
 #include "scene/level_glb.h"
-
-#include <catch2/catch.hpp>
-
-#include <limits>
-
-using namespace nook;
 
 namespace
 {

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "testing.h"
+
 #include "core/math.h"
 #include "emit/catalogue.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
 #include "pattern/quality.h"
 #include "pattern/recipe.h"
-
-#include <catch2/catch.hpp>
-#include <glm/geometric.hpp>
-
-#include <filesystem>
-
-using namespace nook;
 
 namespace
 {

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tables of methods and features: consistency of rows, round trips of setters, words and commands.
+#include "testing.h"
+
 #include "core/decimal.h"
 #include "methods/feature_table.h"
 #include "methods/method_table.h"
-
-#include <catch2/catch.hpp>
-
-#include <set>
-
-using namespace nook;
 
 namespace
 {

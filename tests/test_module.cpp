@@ -6,6 +6,7 @@
 #include "small_modules.h"
 #include "small_views.h"
 #include "temporary_folder.h"
+#include "testing.h"
 
 #include "core/error.h"
 #include "core/file.h"
@@ -16,14 +17,7 @@
 #include "shade/gl_context.h"
 #include "shade/shade.h"
 
-#include <catch2/catch.hpp>
-
-#include <cstdlib>
-#include <cstring>
 #include <regex>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

@@ -2,24 +2,18 @@
 // Emitted modules with textures as engines have them: device depth of 16, 24 and 32 bits for any projection, linear half floats,
 // normals of 8, 10 and 16 bits, rectangles of a texture.
 #include "emit_samples.h"
+#include "nook_vo9.h"
 #include "other_tools.h"
 #include "small_formats.h"
 #include "temporary_folder.h"
+#include "testing.h"
 
 #include "core/file.h"
 #include "emit/module.h"
 #include "shade/gl_context.h"
 #include "shade/shade.h"
 
-#include "nook_vo9.h"
-
-#include <catch2/catch.hpp>
 #include <epoxy/gl.h>
-
-#include <cstring>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {
@@ -248,45 +242,6 @@ TEST_CASE("module: a rectangle of a texture, and a guard band around it", "[emit
 	CHECK(differing(8) > 100); // now the walls are neighbours
 }
 
-TEST_CASE("module: what a block cannot be filled from is refused", "[emit]")
-{
-	const GBuffer gbuffer = builtinView("cornell", 8, 8);
-	const auto fills = [&](const glm::dmat4& projection, auto change)
-	{
-		nook_settings settings = settingsOf(gbuffer);
-		settings.device_depth = true;
-		change(settings);
-		double numbers[16];
-		std::memcpy(numbers, &projection, sizeof numbers);
-		nook_block block{};
-		return nook_fill(block, numbers, settings) == nullptr;
-	};
-	const auto as_it_is = [](nook_settings&) {
-	};
-	const glm::dmat4 good = gbuffer.view.projection;
-	CHECK(fills(good, as_it_is));
-	CHECK(fills(good,
-				[](nook_settings& s)
-				{
-					s.depth_bits = 16;
-					s.guard = 3;
-					s.normal_bits = 10;
-				}));
-	CHECK_FALSE(fills(good, [](nook_settings& s) { s.depth_bits = 8; }));
-	CHECK_FALSE(fills(good, [](nook_settings& s) { s.normal_bits = 4; }));
-	CHECK_FALSE(fills(good, [](nook_settings& s) { s.guard = -1; }));
-	CHECK_FALSE(fills(good, [](nook_settings& s) { s.radius = 0.0; }));
-	CHECK_FALSE(fills(good, [](nook_settings& s) { s.most_pixels = -1.0; }));
-	glm::dmat4 flat = good;
-	flat[2][2] = 0.0;
-	flat[3][2] = 0.0;
-	CHECK_FALSE(fills(flat, as_it_is));
-	CHECK(fills(flat, [](nook_settings& s) { s.device_depth = false; }));
-	flat = good;
-	flat[0][2] = 0.1;
-	CHECK_FALSE(fills(flat, as_it_is));
-}
-
 namespace
 {
 
@@ -363,6 +318,11 @@ TEST_CASE("module: projections of another convention are refused by its name", "
 	oblique[1][2] = -0.2;
 	CHECK(faultOf(oblique).empty());
 	CHECK(holds(faultOf(oblique, true), "depends on x or y"));
+	glm::dmat4 flat_depth = view.projection;
+	flat_depth[2][2] = 0.0;
+	flat_depth[3][2] = 0.0;
+	CHECK(faultOf(flat_depth).empty());
+	CHECK_FALSE(faultOf(flat_depth, true).empty());
 	const View turned = viewOf(builtinLevel("courtyard").cameras[0], 160, 90);
 	CHECK(holds(faultOf(turned.projection * turned.camera_from_world), "found a skew"));
 }
@@ -414,6 +374,10 @@ TEST_CASE("module: each setting out of range is named", "[emit]")
 	}
 	refused("width", [](nook_settings& settings) { settings.width = 0; });
 	refused("height", [](nook_settings& settings) { settings.height = -9; });
+	refused("guard", [](nook_settings& settings) { settings.guard = -1; });
+	refused("depth_bits", [](nook_settings& settings) { settings.depth_bits = 8; });
+	refused("normal_bits", [](nook_settings& settings) { settings.normal_bits = 4; });
+	refused("radius", [](nook_settings& settings) { settings.radius = 0.0; });
 	refused("frame", [](nook_settings& settings) { settings.frame = 16777217; });
 }
 

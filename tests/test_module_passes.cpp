@@ -5,6 +5,7 @@
 #include "small_modules.h"
 #include "small_views.h"
 #include "temporary_folder.h"
+#include "testing.h"
 
 #include "core/file.h"
 #include "core/lists.h"
@@ -19,17 +20,7 @@
 
 #include <epoxy/gl.h>
 
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <cstdlib>
-#include <cstring>
-#include <map>
-#include <memory>
 #include <regex>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

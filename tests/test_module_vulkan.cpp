@@ -3,6 +3,7 @@
 #include "picture_errors.h"
 #include "small_modules.h"
 #include "small_views.h"
+#include "testing.h"
 #include "vulkan_device.h"
 
 #include "core/file.h"
@@ -10,16 +11,9 @@
 #include "methods/recipes.h"
 #include "shade/shade.h"
 
-#include <algorithm>
-#include <array>
 #include <iostream>
-#include <map>
-#include <memory>
 #include <optional>
 #include <span>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

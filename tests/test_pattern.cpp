@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "testing.h"
+
 #include "core/error.h"
 #include "pattern/cells.h"
 #include "pattern/energy.h"
 #include "pattern/methods.h"
 #include "pattern/recipe.h"
 
-#include <catch2/catch.hpp>
-#include <glm/geometric.hpp>
-
-#include <algorithm>
 #include <fstream>
-#include <numeric>
-#include <set>
 #include <sstream>
-
-using namespace nook;
 
 namespace
 {
@@ -127,22 +121,6 @@ TEST_CASE("generate: symmetric patterns hold exact opposites with equal weights,
 	Recipe centred = recipeOf(Domain::ball, 6);
 	centred.centre = true;
 	CHECK(generatePattern(centred).points[0] == glm::dvec3(0.0));
-}
-
-TEST_CASE("generate: the number of threads changes no bit", "[pattern]")
-{
-	for (const Domain domain : {Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere})
-	{
-		for (const Method method : {Method::refine, Method::electro, Method::equal})
-		{
-			const Recipe recipe = recipeOf(domain, 10, method);
-			const Pattern one = generatePattern(recipe, {1, {}});
-			const Pattern three = generatePattern(recipe, {3, {}});
-			CHECK(one.points == three.points);
-			CHECK(one.weights == three.weights);
-			CHECK(one.powers == three.powers);
-		}
-	}
 }
 
 TEST_CASE("generate: who watches sees every start move within the domain, and changes no bit", "[pattern]")
@@ -367,58 +345,4 @@ TEST_CASE("order: the same points, prefixes that cover", "[pattern]")
 		return least;
 	};
 	CHECK(prefix_gap(progressive, 8) > 2.0 * prefix_gap(plain, 8));
-}
-
-TEST_CASE("recipe: options that exclude each other are refused", "[pattern]")
-{
-	const auto refused = [](auto change)
-	{
-		Recipe recipe;
-		change(recipe);
-		try
-		{
-			checkRecipe(recipe);
-		}
-		catch (const Error& error)
-		{
-			return error.code() == ExitCode::usage && std::string(error.what()).find('\n') == std::string::npos;
-		}
-		return false;
-	};
-	CHECK(refused([](Recipe& r) { r.count = 0; }));
-	CHECK(refused([](Recipe& r) { r.count = 4097; }));
-	CHECK(refused([](Recipe& r) { r.starts = -1; }));
-	CHECK(refused(
-		[](Recipe& r)
-		{
-			r.domain = Domain::sphere;
-			r.centre = true;
-		}));
-	CHECK(refused(
-		[](Recipe& r)
-		{
-			r.symmetric = true;
-			r.centre = true;
-			r.count = 8;
-		}));
-	CHECK(refused(
-		[](Recipe& r)
-		{
-			r.domain = Domain::hemisphere;
-			r.symmetric = true;
-		}));
-	CHECK(refused([](Recipe& r) { r.exponent = 1.0; }));
-	CHECK(refused(
-		[](Recipe& r)
-		{
-			r.method = Method::vogel;
-			r.minimise = Minimise::noise;
-		}));
-	CHECK(refused(
-		[](Recipe& r)
-		{
-			r.method = Method::halton;
-			r.starts = 3;
-		}));
-	CHECK_NOTHROW(checkRecipe(Recipe{}));
 }

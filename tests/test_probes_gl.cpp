@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The GLSL function that reads probes compared with the CPU.
 #include "small_levels.h"
+#include "testing.h"
 
 #include "bake/probes.h"
 #include "core/error.h"
 #include "core/random.h"
 #include "shade/gl_context.h"
 
-#include <catch2/catch.hpp>
 #include <epoxy/gl.h>
-#include <glm/geometric.hpp>
-
-#include <algorithm>
-#include <cmath>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

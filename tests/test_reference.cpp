@@ -2,23 +2,13 @@
 // Reference visibility compared with closed forms.
 #include "small_levels.h"
 #include "temporary_folder.h"
+#include "testing.h"
 
 #include "core/error.h"
 #include "core/file.h"
 #include "core/random.h"
 #include "scene/reference.h"
 #include "scene/sample_set.h"
-
-#include <catch2/catch.hpp>
-
-#include <glm/geometric.hpp>
-
-#include <cmath>
-#include <filesystem>
-#include <limits>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {
@@ -322,35 +312,6 @@ TEST_CASE("reference: bent normals of pixels lie in view space, and the rays are
 	CHECK(open > 50);
 }
 
-TEST_CASE("reference: the same values on any number of threads", "[reference]")
-{
-	const Level level = floorAndWall();
-	LevelCamera camera;
-	camera.world_from_camera = worldFromCamera({-3.0, 2.0, 3.0}, {1.0, 0.0, 0.0});
-	const View view = viewOf(camera, 50, 35);
-	for (const auto measure : {ReferenceMeasure::obscurance, ReferenceMeasure::box, ReferenceMeasure::bent})
-	{
-		ReferenceSettings settings = hard(1.0);
-		settings.measure = measure;
-		settings.rays = 40;
-		std::vector<std::vector<ReferenceValue>> results;
-		for (const int threads : {1, 2, 5})
-		{
-			const RunSettings run{threads, {}};
-			const Tracer tracer(level, run);
-			const GBuffer gbuffer = castGBuffer(tracer, view, 50, 35, NormalKind::geometric, run);
-			results.push_back(referenceOfGBuffer(&tracer, gbuffer, settings, run));
-		}
-		for (std::size_t i = 0; i < results[0].size(); ++i)
-		{
-			CHECK(results[0][i].visibility == results[1][i].visibility);
-			CHECK(results[0][i].visibility == results[2][i].visibility);
-			CHECK(results[0][i].standard_error == results[2][i].standard_error);
-			CHECK(results[0][i].bent == results[2][i].bent);
-		}
-	}
-}
-
 TEST_CASE("reference: rays inside a closed mesh far from the origin do not get out", "[reference]")
 {
 	Level level = emptyLevel();
@@ -506,16 +467,7 @@ TEST_CASE("reference: a depth that is no length is refused by its pixel", "[refe
 		GBuffer gbuffer = castGBuffer(tracer, view, 4, 4, NormalKind::geometric, {});
 		CHECK_NOTHROW(referenceOfGBuffer(&tracer, gbuffer, {}, {}));
 		gbuffer.depth[4 * 3 + 1] = depth;
-		try
-		{
-			referenceOfGBuffer(&tracer, gbuffer, {}, {});
-			FAIL("taken: " << depth);
-		}
-		catch (const Error& error)
-		{
-			CHECK(error.code() == ExitCode::invalid_input);
-			CHECK(std::string(error.what()).rfind("depth, pixel 1,3: found ", 0) == 0);
-		}
+		CHECK(refusalBy([&] { referenceOfGBuffer(&tracer, gbuffer, {}, {}); }).starts_with("depth, pixel 1,3: found "));
 	}
 }
 
@@ -527,18 +479,9 @@ TEST_CASE("reference: lists of points are read line by line", "[reference]")
 		writeFile(path, text);
 		return readPoints(path);
 	};
-	const auto failure = [&](const std::string& text) -> std::string
+	const auto failure = [&](const std::string& text)
 	{
-		try
-		{
-			parsed(text);
-		}
-		catch (const Error& error)
-		{
-			CHECK(error.code() == ExitCode::invalid_input);
-			return error.what();
-		}
-		return "";
+		return refusalBy([&] { parsed(text); });
 	};
 	const std::vector<ReferencePoint> points = parsed("# made by hand\nx, y, z, nx, ny, nz\r\n1,2,3, 0,0,2\r\n\n-1e2,.5,0,1,0,0");
 	REQUIRE(points.size() == 2);

@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "testing.h"
+
 #include "core/error.h"
 #include "core/json_reader.h"
 #include "core/math.h"
 #include "pattern/recipe.h"
 #include "study/noise_report.h"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
-
-using namespace nook;
 
 using Approx = Catch::Detail::Approx;
 
@@ -41,15 +35,6 @@ TEST_CASE("report: a power law is fitted exactly", "[report]")
 	CHECK(fit->factor == Approx(0.3).epsilon(1e-12));
 	CHECK(fit->exponent == Approx(0.75).epsilon(1e-12));
 	CHECK_FALSE(fitPower({{4, 0.1}, {5, 0.1}, {6, 0.1}}));
-}
-
-TEST_CASE("report: the same bytes on any number of threads", "[report]")
-{
-	const NoiseReportSettings settings{.max_count = 4, .starts = 2, .random_seeds = 2};
-	const NoiseReport one = measureNoise(settings, {1, {}});
-	const NoiseReport four = measureNoise(settings, {4, {}});
-	CHECK(noiseReportHtml(one, noiseReportCommand(settings), "1") == noiseReportHtml(four, noiseReportCommand(settings), "1"));
-	CHECK(noiseReportJson(one, noiseReportCommand(settings), "1") == noiseReportJson(four, noiseReportCommand(settings), "1"));
 }
 
 // In one process, which measures it once.

@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // FBX files generated here, and what must be read from them.
-#include "core/error.h"
-#include "core/math.h"
-
 #include "fbx_files.h"
 #include "temporary_folder.h"
+#include "testing.h"
+
+#include "core/error.h"
+#include "core/math.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
 #include <tuple>
-
-using namespace nook;
 
 namespace
 {
@@ -50,18 +43,8 @@ Numbers numbers(std::initializer_list<double> values)
 
 std::string refusalOf(const TemporaryFolder& folder, const std::string& bytes, ExitCode code = ExitCode::invalid_input)
 {
-	try
-	{
-		loadText(folder / "a.fbx", bytes);
-	}
-	catch (const Error& error)
-	{
-		const std::string what = error.what();
-		INFO(what);
-		CHECK(error.code() == code);
-		return what.substr(what.find("a.fbx: ") + 7);
-	}
-	return "none";
+	const std::string what = refusalBy([&] { loadText(folder / "a.fbx", bytes); }, code);
+	return what.empty() ? "none" : what.substr(what.find("a.fbx: ") + 7);
 }
 
 // A sheet from 0 to 1 in x and z at y = 0, seen from above; texture coordinates are x and −z.

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Alternative encodings in glTF, and files that are easily misread.
 #include "cube_gltf.h"
+#include "testing.h"
+
 #include "scene/load_parts.h"
 
-#include <catch2/catch.hpp>
 #include <glm/common.hpp>
-
-#include <cmath>
-#include <functional>
-
-using namespace nook;
 
 namespace
 {

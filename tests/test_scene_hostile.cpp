@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Broken and hostile level files: a level with its diagnosis, or one error; never a crash, a hang, or gigabytes.
+#include "level_files.h"
+#include "temporary_folder.h"
+#include "testing.h"
+
 #include "core/error.h"
 #include "core/random.h"
 
-#include "level_files.h"
-#include "temporary_folder.h"
-
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdlib>
-#include <filesystem>
-
 #include <sys/stat.h>
-
-using namespace nook;
 
 namespace
 {

@@ -4,6 +4,7 @@
 #include "level_files.h"
 #include "small_levels.h"
 #include "temporary_folder.h"
+#include "testing.h"
 
 #include "bake/bake.h"
 #include "core/error.h"
@@ -22,17 +23,6 @@
 #include "volume/build.h"
 #include "volume/evaluate.h"
 #include "volume/occluders.h"
-
-#include <catch2/catch.hpp>
-#include <glm/geometric.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <utility>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {
@@ -72,16 +62,8 @@ void checkCube(const LoadedLevel& loaded, glm::dvec3 least, double edge = 1.0)
 
 std::string messageOf(const std::string& path, const LoadSettings& settings = {}, ExitCode code = ExitCode::invalid_input)
 {
-	try
-	{
-		loadLevel(path, settings, {});
-	}
-	catch (const Error& error)
-	{
-		CHECK(error.code() == code);
-		return error.what();
-	}
-	return "no error";
+	const std::string message = refusalBy([&] { loadLevel(path, settings, {}); }, code);
+	return message.empty() ? "no error" : message;
 }
 
 // A masked material on the cube, with its picture in the file `uri`.

@@ -2,6 +2,7 @@
 // Strict text formats: numbers and keywords are read; anything else is rejected with its line.
 #include "level_files.h"
 #include "temporary_folder.h"
+#include "testing.h"
 
 #include "core/error.h"
 #include "core/json_reader.h"
@@ -9,30 +10,14 @@
 #include "scene/mesh_text.h"
 #include "scene/reference.h"
 
-#include <catch2/catch.hpp>
-
-#include <cmath>
-#include <limits>
-#include <vector>
-
-using namespace nook;
-
 namespace
 {
 
 // The error message for a level, without its path.
 std::string refusalOf(const std::string& path, const std::string& text)
 {
-	try
-	{
-		loadText(path, text);
-	}
-	catch (const Error& error)
-	{
-		CHECK(error.code() == ExitCode::invalid_input);
-		return std::string(error.what()).substr(path.size() + 2);
-	}
-	return "nothing";
+	const std::string message = refusalBy([&] { loadText(path, text); });
+	return message.empty() ? "nothing" : message.substr(path.size() + 2);
 }
 
 // A triangle with the given first corner; the others are (1, 0, 0) and (0, 1, 0), and an unused fourth.
@@ -240,16 +225,7 @@ TEST_CASE("scene: MTL keywords of all kinds, and opacities that are none", "[sce
 		INFO(line);
 		writeFile(folder / "a.mtl", "newmtl a\n" + std::string(line) + "\n");
 		writeFile(folder / "a.obj", "mtllib a.mtl\nusemtl a\n" + cubeObj());
-		try
-		{
-			loadLevel(folder / "a.obj", {}, {});
-			FAIL("no error");
-		}
-		catch (const Error& error)
-		{
-			CHECK(error.code() == ExitCode::invalid_input);
-			CHECK(std::string(error.what()).starts_with(folder / "a.mtl: line 2: found "));
-		}
+		CHECK(refusalBy([&] { loadLevel(folder / "a.obj", {}, {}); }).starts_with(folder / "a.mtl: line 2: found "));
 	}
 }
 
@@ -352,16 +328,8 @@ public:
 	// The error message for such a level, without the file's name.
 	std::string refusalOf(const std::string& lines, ExitCode code = ExitCode::invalid_input) const
 	{
-		try
-		{
-			load(lines);
-		}
-		catch (const Error& error)
-		{
-			CHECK(error.code() == code);
-			return std::string(error.what()).substr((m_folder / "a.mtl: ").size());
-		}
-		return "nothing";
+		const std::string message = refusalBy([&] { load(lines); }, code);
+		return message.empty() ? "nothing" : message.substr((m_folder / "a.mtl: ").size());
 	}
 
 private:

@@ -3,19 +3,13 @@
 #include "picture_errors.h"
 #include "small_samples.h"
 #include "small_views.h"
+#include "testing.h"
 
 #include "core/error.h"
 #include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "scene/reference.h"
 #include "shade/shade.h"
-
-#include <catch2/catch.hpp>
-
-#include <cmath>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Area samples if the picture is a rectangle of a larger texture.
 #include "small_views.h"
+#include "testing.h"
 
 #include "methods/block.h"
 #include "methods/kernels.h"
 #include "pattern/recipe.h"
 #include "shade/shade.h"
-
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <limits>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

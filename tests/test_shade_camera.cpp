@@ -3,19 +3,13 @@
 // a texture, guard bands, and the near plane.
 #include "small_formats.h"
 #include "small_samples.h"
+#include "testing.h"
 
 #include "core/error.h"
 #include "pattern/recipe.h"
 #include "shade/shade.h"
 
-#include <catch2/catch.hpp>
-
-#include <algorithm>
 #include <cstdio>
-#include <numeric>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

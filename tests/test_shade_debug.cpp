@@ -2,18 +2,11 @@
 // Debug views: expected values for planes, steps and bands, consistency with other outputs, and the CPU compared with OpenGL.
 #include "picture_errors.h"
 #include "small_views.h"
+#include "testing.h"
 
 #include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "shade/shade.h"
-
-#include <catch2/catch.hpp>
-
-#include <array>
-#include <cmath>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

@@ -2,6 +2,7 @@
 // Filters and half resolution: what they must preserve, what they must remove, and the CPU compared with OpenGL.
 #include "picture_errors.h"
 #include "small_views.h"
+#include "testing.h"
 
 #include "methods/block.h"
 #include "methods/passes.h"
@@ -9,13 +10,6 @@
 #include "pattern/tile.h"
 #include "shade/run_passes.h"
 #include "shade/shade.h"
-
-#include <catch2/catch.hpp>
-
-#include <cmath>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The gather of five pixels for renderers that shade several samples per pixel, compared with visibility evaluated at each sample.
 #include "small_views.h"
+#include "testing.h"
 
 #include "methods/block.h"
 #include "pattern/recipe.h"
 #include "shade/shade.h"
-
-#include <catch2/catch.hpp>
-
-#include <array>
-#include <cmath>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

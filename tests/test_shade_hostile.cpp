@@ -2,17 +2,10 @@
 // Impossible inputs: depths and projections of any size. Every method rejects them, or returns visibility.
 #include "hostile_views.h"
 #include "small_views.h"
+#include "testing.h"
 
 #include "core/error.h"
 #include "core/random.h"
-
-#include <catch2/catch.hpp>
-
-#include <bit>
-#include <string>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {
@@ -101,16 +94,7 @@ TEST_CASE("hostile views: a depth that is no length is refused by its pixel", "[
 		gbuffer.depth[24 * 3 + 5] = depth;
 		for (std::size_t i = 0; i < namesOf<ShadeMethod>().size(); ++i)
 		{
-			try
-			{
-				drawn(gbuffer, static_cast<ShadeMethod>(i));
-				FAIL("taken: " << depth);
-			}
-			catch (const Error& error)
-			{
-				CHECK(error.code() == ExitCode::invalid_input);
-				CHECK(std::string(error.what()).rfind("depth, pixel 5,3: found ", 0) == 0);
-			}
+			CHECK(refusalBy([&] { drawn(gbuffer, static_cast<ShadeMethod>(i)); }).starts_with("depth, pixel 5,3: found "));
 		}
 	}
 }

@@ -2,20 +2,12 @@
 // Coarser depth levels for distant samples.
 #include "picture_errors.h"
 #include "small_views.h"
+#include "testing.h"
 
 #include "methods/block.h"
 #include "methods/passes.h"
 #include "pattern/recipe.h"
 #include "shade/shade.h"
-
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

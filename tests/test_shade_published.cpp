@@ -3,20 +3,13 @@
 #include "picture_errors.h"
 #include "small_gbuffers.h"
 #include "small_views.h"
+#include "testing.h"
 
 #include "methods/block.h"
 #include "methods/passes.h"
 #include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "shade/shade.h"
-
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <cmath>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

@@ -3,21 +3,12 @@
 #include "picture_errors.h"
 #include "small_gbuffers.h"
 #include "small_views.h"
+#include "testing.h"
 
 #include "methods/block.h"
 #include "scene/reference.h"
 #include "scene/tracer.h"
 #include "shade/shade.h"
-
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

@@ -3,23 +3,13 @@
 #include "picture_errors.h"
 #include "small_gbuffers.h"
 #include "small_views.h"
+#include "testing.h"
 
 #include "methods/block.h"
 #include "pattern/tile.h"
 #include "scene/reference.h"
 #include "scene/tracer.h"
 #include "shade/shade.h"
-
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <numeric>
-#include <set>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

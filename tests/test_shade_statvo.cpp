@@ -2,20 +2,13 @@
 // Statistical volumetric obscurance: its tables compared with 64-bit sums, planes, closed forms, and the CPU with OpenGL.
 #include "small_samples.h"
 #include "small_views.h"
+#include "testing.h"
 
 #include "core/error.h"
 #include "core/random.h"
 #include "scene/reference.h"
 #include "shade/gl_context.h"
 #include "shade/shade.h"
-
-#include <catch2/catch.hpp>
-
-#include <cmath>
-#include <functional>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

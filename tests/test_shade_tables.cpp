@@ -3,6 +3,7 @@
 #include "picture_errors.h"
 #include "small_samples.h"
 #include "small_views.h"
+#include "testing.h"
 
 #include "core/error.h"
 #include "core/random.h"
@@ -10,14 +11,7 @@
 #include "shade/run_passes.h"
 #include "shade/shade.h"
 
-#include <catch2/catch.hpp>
 #include <epoxy/gl.h>
-
-#include <array>
-#include <cmath>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

@@ -2,6 +2,7 @@
 // Volumetric obscurance with further features: areas, thickness, falloff, two radii, pairs, bands.
 #include "picture_errors.h"
 #include "small_views.h"
+#include "testing.h"
 
 #include "core/error.h"
 #include "core/random.h"
@@ -11,14 +12,6 @@
 #include "pattern/tile.h"
 #include "scene/reference.h"
 #include "shade/shade.h"
-
-#include <catch2/catch.hpp>
-
-#include <cmath>
-#include <functional>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The store of finished work: archives, values on disk, units of a stage and their shares.
+#include "temporary_folder.h"
+#include "testing.h"
+
 #include "core/error.h"
 #include "core/file.h"
 #include "core/random.h"
 #include "core/work_units.h"
 
-#include "temporary_folder.h"
-
-#include <catch2/catch.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
-
-#include <algorithm>
-#include <array>
-#include <filesystem>
-#include <numeric>
-
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -54,9 +48,8 @@ namespace
 
 std::vector<Item> sampleItems()
 {
-	return {{"one", 0.1, {glm::vec3(1.0F, 2.0F, 3.0F)}, {1, 2, 3}, Paint::green, true},
-			{},
-			{"three", std::nullopt, {}, {}, {}, false}};
+	return {
+		{"one", 0.1, {glm::vec3(1.0F, 2.0F, 3.0F)}, {1, 2, 3}, Paint::green, true}, {}, {"three", std::nullopt, {}, {}, {}, false}};
 }
 
 // The greatest load over the mean.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rays compared with every triangle in double precision.
 #include "small_levels.h"
+#include "testing.h"
 
 #include "core/random.h"
 #include "scene/builtin.h"
@@ -9,19 +10,8 @@
 #include "scene/sample_set.h"
 #include "scene/tracer.h"
 
-#include <catch2/catch.hpp>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <vector>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The search of nook tune on grids whose every value is known.
+#include "testing.h"
+
 #include "core/error.h"
 #include "core/random.h"
 #include "study/tune.h"
 #include "study/tune_search.h"
-
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-using namespace nook;
 
 namespace
 {

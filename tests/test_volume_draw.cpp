@@ -2,6 +2,7 @@
 // nook_volumes_draw.h compared with a reference that multiplies whole matrices.
 #include "small_gbuffers.h"
 #include "small_volumes.h"
+#include "testing.h"
 
 #include "core/random.h"
 #include "scene/builtin.h"
@@ -9,17 +10,6 @@
 #include "shade/gl_context.h"
 #include "volume/compensate.h"
 #include "volume/occluders.h"
-
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <set>
-#include <string>
-#include <vector>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

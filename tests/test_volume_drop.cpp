@@ -2,6 +2,7 @@
 // Dropping changes nothing visible, or no more than stated.
 #include "fill.h"
 #include "small_levels.h"
+#include "testing.h"
 
 #include "core/error.h"
 #include "core/random.h"
@@ -12,15 +13,6 @@
 #include "volume/receivers.h"
 #include "volume/region.h"
 #include "volume/volumes.h"
-
-#include <catch2/catch.hpp>
-#include <glm/geometric.hpp>
-
-#include <algorithm>
-#include <cmath>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {
@@ -291,20 +283,6 @@ TEST_CASE("drop: out of sight of the cameras' boxes", "[volume_drop]")
 	{
 		CHECK(corner.x >= (corner.y > 0.05 ? -0.2 : -6.0)); // nothing of the box behind the wall
 	}
-}
-
-TEST_CASE("drop: the same on any number of threads", "[volume_drop]")
-{
-	const Level level = builtinLevel("suburb");
-	const Tracer tracer(level, {});
-	DropSettings settings;
-	settings.below = 1.0 / 128.0;
-	const Occluders occluders = trianglesOf(level);
-	const Dropped one = dropVolumes(occluders, tracer, 0.3, false, settings, {1, {}});
-	const Dropped three = dropVolumes(occluders, tracer, 0.3, false, settings, {3, {}});
-	CHECK(one.counts.kept == three.counts.kept);
-	CHECK(one.counts.greatest_loss == three.counts.greatest_loss);
-	CHECK(one.occluders.corners == three.occluders.corners);
 }
 
 TEST_CASE("volume tree: finds every triangle that a slow search finds", "[volume_drop]")

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The form factor's kernel against a slow and obvious twin of any precision, for polygons that are hard for 32 bits.
+#include "testing.h"
+
 #include "methods/volume_kernels.h"
 #include "stress/hard_inputs.h"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <catch2/catch.hpp>
 
-#include <array>
-#include <limits>
-#include <vector>
-
-using namespace nook;
 using nook::stress::randomDirection;
 
 namespace

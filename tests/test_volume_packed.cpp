@@ -4,6 +4,7 @@
 #include "small_levels.h"
 #include "small_volumes.h"
 #include "temporary_folder.h"
+#include "testing.h"
 
 #include "core/error.h"
 #include "core/file.h"
@@ -14,18 +15,7 @@
 #include "volume/volume_glb.h"
 #include "volume/volumes.h"
 
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <array>
-#include <cstring>
-#include <map>
-#include <memory>
 #include <meshoptimizer.h>
-#include <set>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

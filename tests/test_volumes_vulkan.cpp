@@ -2,16 +2,12 @@
 // Volumes and masks in Vulkan's GLSL and in HLSL, compiled by glslang and drawn by a Vulkan driver.
 #include "small_gbuffers.h"
 #include "small_volumes.h"
+#include "testing.h"
 #include "vulkan_device.h"
 
 #include "core/lists.h"
 #include "emit/module.h"
 #include "shade/aov_gl_parts.h"
-
-#include <map>
-
-using namespace nook;
-using namespace nook::test;
 
 namespace
 {

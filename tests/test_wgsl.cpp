@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // WGSL from the GLSL of modules. webgpu_test.sh compares its pictures.
+#include "testing.h"
+
 #include "core/error.h"
 #include "emit/module_parts.h"
-
-#include <catch2/catch.hpp>
-
-using namespace nook;
 
 namespace
 {

@@ -2,16 +2,13 @@
 // Tiles and their errors, for the tests of tiles.
 #pragma once
 
+#include "testing.h"
+
 #include "core/random.h"
 #include "pattern/energy.h"
 #include "pattern/pattern.h"
 #include "pattern/recipe.h"
 #include "pattern/tile.h"
-
-#include <cmath>
-#include <cstddef>
-#include <numeric>
-#include <vector>
 
 namespace nook
 {

@@ -4,20 +4,14 @@
 
 #include "other_tools.h"
 #include "temporary_folder.h"
+#include "testing.h"
 
 #include "core/file.h"
 #include "methods/passes.h"
 
-#include <catch2/catch.hpp>
 #include <vulkan/vulkan.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstring>
 #include <optional>
-#include <string>
-#include <vector>
 
 namespace nook::test
 {

@@ -7,20 +7,10 @@ nook=$(realpath "$1")
 source=$(realpath "$2")
 cache=$3
 . "$(dirname "$0")/table.sh"
+. "$(dirname "$0")/npm_tools.sh"
 
-skip()
-{
-	echo "skipped: $*" >&2
-	exit 77
-}
-
-command -v node >/dev/null && command -v npm >/dev/null || skip "found no node or no npm, expected both (scripts/setup.sh)"
-mkdir -p "$cache" && cp "$source"/tests/webgpu/* "$cache" && cache=$(realpath "$cache") || exit 1
-if ! [ -e "$cache/installed" ]; then
-	(cd "$cache" && timeout 120 npm ci --no-audit --no-fund --ignore-scripts --fetch-retries 1 --fetch-timeout 30000) >"$folder/log" 2>&1 ||
-		skip "npm could not install webgpu: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
-	touch "$cache/installed" # only once everything is installed
-fi
+npm_packages "$cache" webgpu@0.6.2
+cp "$source"/tests/webgpu/*.mjs "$cache" || exit 1
 firefox=$(command -v firefox-esr || command -v firefox) || echo "left out: found no Firefox, expected Debian's firefox-esr"
 # Chromium's driver on the CPU, because Dawn refuses Mesa's as incomplete.
 dawn=

@@ -329,7 +329,7 @@ Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& fa
 	{
 		return {};
 	}
-	in.charts = chartsOf(target.places, unwrapped);
+	in.charts = chartsOf(target.places, unwrapped, false);
 	in.pages = mapped(pages, pngOf);
 	Made made;
 	const GltfBaked baked = write(options, target, level, in, made);
@@ -431,7 +431,7 @@ Made makeAuto(const BakeOptions& options, const BakeInput& input, Facts& facts, 
 		turnBack(unwrapped.level, vertices, turned);
 		in.visibility = vertices.visibility;
 		in.back = vertices.back;
-		in.charts = chartsAndRest(target.places, unwrapped);
+		in.charts = chartsOf(target.places, unwrapped, true);
 		in.pages = mapped(bake.pages, pngOf);
 		in.record["pages"] = in.pages.size();
 		made = {};

@@ -128,7 +128,7 @@ BakeFile fileOf(const BakeOptions& options, const BakeInput& input, const Level&
 	}
 	else
 	{
-		made.file = openGlb(levelGlb(level, kProgram, made.places), level.name);
+		made.file = openGlb(levelGlb(level, kProgram, &made.places), level.name);
 		std::erase_if(made.places, [&input](const GltfPlace& place) { return input.part && input.receivers[place.triangle] == 0; });
 	}
 	checkTarget(made.file, made.places, bake);

@@ -21,7 +21,7 @@ inline std::string bakedGlb(const Level& level, std::string_view generator, cons
 	GltfBake in;
 	static_cast<GlbBake&>(in) = bake;
 	std::vector<GltfPlace> places;
-	std::string bytes = levelGlb(level, generator, places);
+	std::string bytes = levelGlb(level, generator, &places);
 	const std::array<std::string, 1> output{"level.glb"};
 	return bakeInto(openGlb(std::move(bytes), level.name), places, in, output).files.front();
 }

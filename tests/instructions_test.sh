@@ -74,7 +74,7 @@ if ! command -v qemu-x86_64-static >log; then
 fi
 mkdir -p built/tools built/libsamples/core
 cp "$nook" built/tools/nook
-for worker in nook_image_worker nook_exr_worker nook_picture_worker nook_level_worker; do
+for worker in nook_image_worker nook_picture_worker nook_level_worker; do
 	ln -s "$(dirname "$(dirname "$nook")")/libsamples/core/$worker" built/$worker
 	printf '#!/bin/sh\nexec qemu-x86_64-static -cpu "$cpu" "%s" "$@"\n' "$PWD/built/$worker" >built/libsamples/core/$worker
 	chmod +x built/libsamples/core/$worker

@@ -128,7 +128,7 @@ BakeFile fileOf(const BakeOptions& options, const BakeInput& input, const Level&
 	}
 	else
 	{
-		made.file = openGlb(levelGlb(level, kProgram, made.places), level.name);
+		made.file = openGlb(levelGlb(level, kProgram, &made.places), level.name);
 		std::erase_if(made.places, [&input](const GltfPlace& place) { return input.part && input.receivers[place.triangle] == 0; });
 	}
 	checkTarget(made.file, made.places, bake);
@@ -329,7 +329,7 @@ Made makeUnwrapped(const BakeOptions& options, const BakeInput& input, Facts& fa
 	{
 		return {};
 	}
-	in.charts = chartsOf(target.places, unwrapped);
+	in.charts = chartsOf(target.places, unwrapped, false);
 	in.pages = mapped(pages, pngOf);
 	Made made;
 	const GltfBaked baked = write(options, target, level, in, made);
@@ -431,7 +431,7 @@ Made makeAuto(const BakeOptions& options, const BakeInput& input, Facts& facts, 
 		turnBack(unwrapped.level, vertices, turned);
 		in.visibility = vertices.visibility;
 		in.back = vertices.back;
-		in.charts = chartsAndRest(target.places, unwrapped);
+		in.charts = chartsOf(target.places, unwrapped, true);
 		in.pages = mapped(bake.pages, pngOf);
 		in.record["pages"] = in.pages.size();
 		made = {};

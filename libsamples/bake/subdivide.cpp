@@ -2,6 +2,7 @@
 #include "bake/surface_samples.h"
 
 #include "core/lists.h"
+#include "scene/topology.h"
 
 #include <glm/geometric.hpp>
 
@@ -28,40 +29,29 @@ uint64_t pairOf(uint32_t a, uint32_t b)
 class EdgeMarks
 {
 public:
-	EdgeMarks(const Level& level, const Unknowns& unknowns) : m_level(level)
+	EdgeMarks(const Level& level, const Unknowns& unknowns, int threads) : m_level(level), m_edge(3 * level.triangles.size())
 	{
-		struct Side
+		const std::vector<uint32_t>& place_of = unknowns.place_of_vertex;
+		const std::vector<glm::uvec3> places =
+			mapped(level.triangles, [&](glm::uvec3 t) { return glm::uvec3(place_of[t.x], place_of[t.y], place_of[t.z]); });
+		const EdgeTable edges(places, {}, level.positions.size(), threads);
+		const auto addEdge = [&](std::span<const HalfEdge> edge)
 		{
-			uint64_t places = 0;
-			uint32_t slot = 0; // 3 × triangle + edge
+			m_first.push_back(m_triangle.size());
+			double length_m = 0.0;
+			for (const HalfEdge& half : edge)
+			{
+				const glm::uvec3 corner = places[half.triangle()];
+				const int higher = half.to == corner.x ? 0 : half.to == corner.y ? 1 : 2;
+				const int k = (higher + (half.side % 2 != 0 ? 0 : 2)) % 3; // from corner k to the next one
+				m_edge[3 * half.triangle() + static_cast<uint32_t>(k)] = static_cast<uint32_t>(m_length.size());
+				m_triangle.push_back(half.triangle());
+				length_m = glm::distance(level.positions[corner[k]], level.positions[corner[(k + 1) % 3]]);
+			}
+			m_length.push_back(length_m);
 		};
-		std::vector<Side> sides;
-		sides.reserve(3 * level.triangles.size());
-		for (std::size_t t = 0; t < level.triangles.size(); ++t)
-		{
-			for (int edge = 0; edge < 3; ++edge)
-			{
-				const uint32_t a = unknowns.place_of_vertex[level.triangles[t][edge]];
-				const uint32_t b = unknowns.place_of_vertex[level.triangles[t][(edge + 1) % 3]];
-				sides.push_back({pairOf(a, b), static_cast<uint32_t>(sides.size())});
-			}
-		}
-		std::sort(sides.begin(), sides.end(),
-				  [](const Side& a, const Side& b) { return a.places != b.places ? a.places < b.places : a.slot < b.slot; });
-		m_edge.resize(sides.size());
-		m_triangle.reserve(sides.size());
-		for (std::size_t i = 0; i < sides.size(); ++i)
-		{
-			if (i == 0 || sides[i].places != sides[i - 1].places)
-			{
-				m_first.push_back(i);
-				m_length.push_back(glm::distance(level.positions[sides[i].places >> 32U],
-												 level.positions[static_cast<uint32_t>(sides[i].places)]));
-			}
-			m_edge[sides[i].slot] = static_cast<uint32_t>(m_first.size() - 1);
-			m_triangle.push_back(sides[i].slot / 3);
-		}
-		m_first.push_back(sides.size());
+		edges.each(0, edges.vertexCount(), addEdge);
+		m_first.push_back(m_triangle.size());
 		m_marked.assign(m_length.size(), 0);
 	}
 
@@ -469,7 +459,7 @@ VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const 
 		const Unknowns unknowns = unknownsOf(level, settings.sides);
 		const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings);
 		take(bake, level, unknowns, fitted);
-		EdgeMarks marks(level, unknowns);
+		EdgeMarks marks(level, unknowns, run.threads);
 		const Worst worst =
 			worstOf(marks, areas, errorsOf(level, unknowns, samples, fitted.values), settings.max_error, least_edge_m);
 		bake.above = worst.large.size() + worst.small;

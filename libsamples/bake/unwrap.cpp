@@ -282,82 +282,49 @@ std::vector<TextureBake> bakePages(const Tracer& tracer, const Unwrapped& unwrap
 	return pages;
 }
 
-std::vector<GltfCharts> chartsAndRest(std::span<const GltfPlace> places, const Unwrapped& unwrapped)
+std::vector<GltfCharts> chartsOf(std::span<const GltfPlace> places, const Unwrapped& unwrapped, bool with_rest)
 {
 	std::vector<GltfCharts> charts;
-	std::vector<uint32_t> number(unwrapped.level.positions.size(), kNoIndex);
+	std::vector<uint32_t> number(unwrapped.level.positions.size(), kNoIndex); // in the primitive, or among the copies
 	std::size_t triangle = 0;
 	for (const GltfPlace& place : places)
 	{
 		GltfCharts& made = charts.emplace_back();
+		made.uvs.resize(with_rest ? 0 : place.count, glm::vec2(0.0F));
 		made.pages.resize(unwrapped.pages);
-		made.page_vertices.resize(unwrapped.pages);
-		for (const glm::uvec3 file : place.corners)
-		{
-			const glm::uvec3 corner = unwrapped.level.triangles[triangle];
-			const uint32_t page = unwrapped.page_of[triangle];
-			triangle += 1;
-			for (int k = 0; k < 3; ++k)
-			{
-				const uint32_t v = corner[place.mirrored ? (3 - k) % 3 : k];
-				const bool is_new = number[v] == kNoIndex;
-				if (page == kNoPage)
-				{
-					made.rest.push_back(file[k]);
-					number[v] = file[k];
-				}
-				else
-				{
-					number[v] = is_new ? static_cast<uint32_t>(made.copied.size()) : number[v];
-					made.pages[page].push_back(number[v]);
-				}
-				if (is_new)
-				{
-					(page == kNoPage ? made.rest_vertices : made.page_vertices[page]).emplace_back(number[v], v);
-				}
-				if (is_new && page != kNoPage)
-				{
-					made.copied.emplace_back(file[k], file[k]);
-					made.uvs.push_back(unwrapped.level.uvs[v]);
-				}
-			}
-		}
-	}
-	return charts;
-}
-
-std::vector<GltfCharts> chartsOf(std::span<const GltfPlace> places, const Unwrapped& unwrapped)
-{
-	std::vector<GltfCharts> charts;
-	std::vector<uint32_t> number(unwrapped.level.positions.size(), kNoIndex); // in the primitive
-	std::size_t triangle = 0;
-	for (const GltfPlace& place : places)
-	{
-		GltfCharts& made = charts.emplace_back();
-		made.uvs.resize(place.count, glm::vec2(0.0F));
-		made.pages.resize(unwrapped.pages);
-		std::vector<bool> is_taken(place.count, false); // by a chart
+		made.page_vertices.resize(with_rest ? unwrapped.pages : 0);
+		std::vector<bool> is_taken(place.count, with_rest); // by a chart
 		std::size_t page = 0;
 		for (const glm::uvec3 file : place.corners)
 		{
 			const glm::uvec3 corner = unwrapped.level.triangles[triangle];
-			page = unwrapped.page_of[triangle] == kNoPage ? page : unwrapped.page_of[triangle];
+			const bool is_flat = unwrapped.page_of[triangle] == kNoPage;
+			page = is_flat ? page : unwrapped.page_of[triangle];
 			triangle += 1;
+			const bool rests = with_rest && is_flat;
 			for (int k = 0; k < 3; ++k)
 			{
 				const uint32_t v = corner[place.mirrored ? (3 - k) % 3 : k];
 				if (number[v] == kNoIndex)
 				{
-					number[v] = is_taken[file[k]] ? static_cast<uint32_t>(made.uvs.size()) : file[k];
-					if (is_taken[file[k]])
+					const bool is_copied = !rests && is_taken[file[k]];
+					number[v] = is_copied ? static_cast<uint32_t>(made.uvs.size()) : file[k];
+					if (is_copied)
 					{
 						made.copied.emplace_back(file[k], file[k]);
 						made.uvs.emplace_back();
 					}
-					is_taken[file[k]] = true;
-					made.uvs[number[v]] = unwrapped.level.uvs[v];
+					if (with_rest)
+					{
+						(rests ? made.rest_vertices : made.page_vertices[page]).emplace_back(number[v], v);
+					}
+					if (!rests)
+					{
+						is_taken[file[k]] = true;
+						made.uvs[number[v]] = unwrapped.level.uvs[v];
+					}
 				}
-				made.pages[page].push_back(number[v]);
+				(rests ? made.rest : made.pages[page]).push_back(number[v]);
 			}
 		}
 	}

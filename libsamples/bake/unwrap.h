@@ -89,13 +89,10 @@ Unwrapped unwrap(const Level& level, std::span<const UnwrapPiece> pieces, const 
 // Textures of the pages, finished. Progress stage "texels".
 std::vector<TextureBake> bakePages(const Tracer& tracer, const Unwrapped& unwrapped, BakeSettings settings, const RunSettings& run);
 
-// A glTF file's primitives at their places as pieces, and what they become. Not for instances, which share
-// their coordinates.
+// A glTF file's primitives at their places as pieces, and what they become; `with_rest`: for a bake that has values at the vertices
+// of triangles without a page. Not for instances, which share their coordinates.
 std::vector<UnwrapPiece> piecesOf(std::span<const GltfPlace> places);
-std::vector<GltfCharts> chartsOf(std::span<const GltfPlace> places, const Unwrapped& unwrapped);
-
-// Likewise for a bake that has values at the vertices of triangles without a page.
-std::vector<GltfCharts> chartsAndRest(std::span<const GltfPlace> places, const Unwrapped& unwrapped);
+std::vector<GltfCharts> chartsOf(std::span<const GltfPlace> places, const Unwrapped& unwrapped, bool with_rest);
 
 // Shared by its parts.
 

@@ -336,13 +336,11 @@ Unknowns unknownsOf(const Level& level, BakeSides sides)
 	Unknowns unknowns;
 	unknowns.place_of_vertex.resize(order.size());
 	std::vector<uint32_t> firsts;
-	for (std::size_t begin = 0; begin < order.size();)
+	const auto addPlace = [&](std::span<const uint32_t> vertices)
 	{
-		std::size_t end = begin;
 		firsts.clear();
-		for (; end < order.size() && level.positions[order[end]] == level.positions[order[begin]]; ++end)
+		for (const uint32_t v : vertices)
 		{
-			const uint32_t v = order[end];
 			const auto found = std::find_if(
 				firsts.begin(), firsts.end(),
 				[&](uint32_t other) { return normals[v] == normals[other] || glm::dot(normals[v], normals[other]) > kSameNormal; });
@@ -351,10 +349,12 @@ Unknowns unknownsOf(const Level& level, BakeSides sides)
 			{
 				firsts.push_back(v);
 			}
-			unknowns.place_of_vertex[v] = order[begin];
+			unknowns.place_of_vertex[v] = vertices.front();
 		}
-		begin = end;
-	}
+	};
+	eachRun(
+		std::span<const uint32_t>(order), [&](uint32_t a, uint32_t b) { return level.positions[a] == level.positions[b]; },
+		addPlace);
 	unknowns.of_vertex.resize(order.size());
 	for (std::size_t v = 0; v < order.size(); ++v) // the first one precedes those that share its value
 	{

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values ↔ bytes. One visitor per type does both: `void visit(Archive& archive, T& value)` passes each member to the archive, which
-// writes it or reads into it. Little-endian, as every machine that nook supports.
+// Values ↔ bytes, in memory or a stream. One visitor per type does both: `void visit(Archive& archive, T& value)` passes each
+// member to the archive, which writes it or reads into it. Little-endian, as every machine that nook supports.
 #pragma once
 
 #include <cstddef>
@@ -35,6 +35,10 @@ public:
 	Archive() = default;                                                       // writes
 	explicit Archive(std::string_view bytes) : m_left(bytes), m_reads(true) {} // reads; `bytes` must outlive it
 
+	// Writes or reads by moving each piece. Longer texts and lists than `most_bytes` are rejected.
+	using Move = std::function<void(void* data, std::size_t size)>;
+	Archive(Move move, bool reads, std::size_t most_bytes) : m_move(std::move(move)), m_most_bytes(most_bytes), m_reads(reads) {}
+
 	bool reads() const
 	{
 		return m_reads;
@@ -66,6 +70,11 @@ public:
 private:
 	void raw(void* data, std::size_t size)
 	{
+		if (m_move)
+		{
+			m_well ? m_move(data, size) : void();
+			return;
+		}
 		if (!m_reads)
 		{
 			m_bytes.append(static_cast<const char*>(data), size);
@@ -86,7 +95,7 @@ private:
 		raw(&found, sizeof found);
 		if (m_reads)
 		{
-			require(found <= m_left.size() / least_bytes);
+			require(found <= (m_move ? m_most_bytes : m_left.size()) / least_bytes);
 			found = m_well ? found : 0;
 		}
 		return static_cast<std::size_t>(found);
@@ -107,10 +116,11 @@ private:
 		}
 		else
 		{
-			list.resize(count(list.size(), 1));
-			for (Item& item : list)
+			const std::size_t size = count(list.size(), 1);
+			list.resize(m_reads ? 0 : size);
+			for (std::size_t i = 0; i < size && m_well; ++i) // never more items than bytes that were sent
 			{
-				pass(item);
+				pass(m_reads ? list.emplace_back() : list[i]);
 			}
 		}
 	}
@@ -143,6 +153,8 @@ private:
 
 	std::string m_bytes;
 	std::string_view m_left;
+	Move m_move; // of a stream
+	std::size_t m_most_bytes = 0;
 	bool m_reads = false;
 	bool m_well = true;
 };

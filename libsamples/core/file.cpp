@@ -7,6 +7,7 @@
 #include "core/system.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -48,6 +49,22 @@ void writeAll(std::FILE* file, const std::string& path, std::string_view bytes)
 	if (std::fwrite(bytes.data(), 1, bytes.size(), file) != bytes.size() || std::fflush(file) != 0)
 	{
 		fail(path, "written", errno);
+	}
+}
+
+// Calls use(block) with the contents in blocks of a whole number of words.
+template <class Use> void readBlocks(const std::string& path, const Use& use)
+{
+	const File file = opened(path, "rb", path, "read");
+	std::array<char, 65536> block;
+	for (std::size_t size = block.size(); size == block.size();)
+	{
+		size = std::fread(block.data(), 1, block.size(), file.get());
+		use(std::string_view(block.data(), size));
+	}
+	if (std::ferror(file.get()) != 0)
+	{
+		fail(path, "read", errno);
 	}
 }
 
@@ -223,53 +240,31 @@ void end(int signal)
 
 std::string readFile(const std::string& path)
 {
-	const File file = opened(path, "rb", path, "read");
 	std::string bytes;
 	std::error_code unknown; // unknown for a pipe, for example
 	const std::uintmax_t size = std::filesystem::file_size(nativePath(path), unknown);
+	const auto checkSize = [&path](std::uintmax_t so_far)
+	{
+		so_far > kMaxFileBytes ? fail(path, "read", EFBIG) : void();
+	};
 	if (!unknown)
 	{
-		if (size > kMaxFileBytes)
-		{
-			fail(path, "read", EFBIG); // before allocating any memory
-		}
+		checkSize(size); // before allocating any memory
 		bytes.reserve(static_cast<std::size_t>(size));
 	}
-	char buffer[65536];
-	for (;;)
-	{
-		const std::size_t got = std::fread(buffer, 1, sizeof buffer, file.get());
-		bytes.append(buffer, got);
-		if (got < sizeof buffer)
-		{
-			break;
-		}
-		if (bytes.size() > kMaxFileBytes)
-		{
-			fail(path, "read", EFBIG);
-		}
-	}
-	if (std::ferror(file.get()) != 0)
-	{
-		fail(path, "read", errno);
-	}
+	readBlocks(path,
+			   [&](std::string_view block)
+			   {
+				   bytes += block;
+				   checkSize(bytes.size());
+			   });
 	return bytes;
 }
 
 std::string hashOfFile(const std::string& path)
 {
-	const File file = opened(path, "rb", path, "read");
 	ContentHash hash;
-	std::vector<std::byte> block(std::size_t{1} << 20U);
-	for (std::size_t size = block.size(); size == block.size();)
-	{
-		size = std::fread(block.data(), 1, block.size(), file.get());
-		hash.add(std::span<const std::byte>(block.data(), size));
-	}
-	if (std::ferror(file.get()) != 0)
-	{
-		fail(path, "read", errno);
-	}
+	readBlocks(path, [&hash](std::string_view block) { hash.add(std::as_bytes(std::span(block))); });
 	return hash.text();
 }
 
@@ -436,22 +431,15 @@ void handleSignals()
 
 void removeTemporaryFiles()
 {
-	for (TemporaryFile::Entry* entry = TemporaryFile::s_entries; entry != nullptr; entry = entry->next)
-	{
-		if (entry->state == TemporaryFile::Entry::valid && !entry->is_folder)
-		{
-			removeFile(entry->path);
-		}
-	}
-	// Each pass removes at least the innermost folders.
+	// First the files; then each pass removes at least the innermost folders.
 	constexpr int kDepth = 16;
-	for (int i = 0; i < kDepth; ++i)
+	for (int pass = 0; pass <= kDepth; ++pass)
 	{
 		for (TemporaryFile::Entry* entry = TemporaryFile::s_entries; entry != nullptr; entry = entry->next)
 		{
-			if (entry->state == TemporaryFile::Entry::valid && entry->is_folder)
+			if (entry->state == TemporaryFile::Entry::valid && entry->is_folder == (pass > 0))
 			{
-				removeFolder(entry->path);
+				entry->is_folder ? removeFolder(entry->path) : removeFile(entry->path);
 			}
 		}
 	}

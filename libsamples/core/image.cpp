@@ -44,27 +44,7 @@ Isolated ask(const char* worker, const char* function)
 	return {worker, function, true};
 }
 
-// Runs without limits, since the picture is our own.
-std::string encoded(ImageToEncode image, const float* pixels, const Notes& notes)
-{
-	image.attributes.insert(image.attributes.end(), notes.begin(), notes.end());
-	std::string bytes;
-	isolate(
-		ask(kExrWorker, kEncode), "image", std::nullopt,
-		[&](ValueWriter& to)
-		{
-			send(image, to);
-			to.bytes(pixels, image.bytes());
-		},
-		[&](ValueReader& from)
-		{
-			bytes.clear();
-			from.values(bytes, kTables + 4 * image.bytes());
-		});
-	return bytes;
-}
-
-[[maybe_unused]] std::size_t valuesOf(int width_px, int height_px, int channels)
+std::size_t valuesOf(int width_px, int height_px, int channels)
 {
 	return static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) * static_cast<std::size_t>(channels);
 }
@@ -81,114 +61,16 @@ std::size_t storedBytes(const std::vector<EncodedAlpha>& pictures)
 	return sumOver(pictures, bytesOf);
 }
 
-// First bytes of a file; empty if it cannot be read, which the decoder reports.
-std::string beginOf(const std::string& path)
-{
-	std::string bytes(8, '\0');
-	std::ifstream file(nativePath(path), std::ios::binary);
-	file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-	return bytes;
-}
-
 // For a file that the worker that is to read it declines, or that a missing OpenImageIO would read.
 [[noreturn]] void refuseDeclined(const std::string& name, const std::string& defect)
 {
 	if (!defect.empty())
 	{
-		throw Error(ExitCode::invalid_input, name + ": found " + oneLine(defect) + ", expected an image that can be read");
+		refuseInput(name, oneLine(defect), "an image that can be read");
 	}
-	throw Error(ExitCode::unsupported,
-				name +
-					": found a picture that only OpenImageIO reads, and none of the version that nook was built with, expected " +
-					"PNG, JPEG, TGA, BMP, EXR or uncompressed KTX2");
+	refuseInput(name, "a picture that only OpenImageIO reads, and none of the version that nook was built with",
+				"PNG, JPEG, TGA, BMP, EXR or uncompressed KTX2", ExitCode::unsupported);
 }
-
-// Decodes the opacities of the pictures of one file, `all`, under a common limit.
-class AlphaDecoder
-{
-public:
-	AlphaDecoder(const std::vector<EncodedAlpha>& pictures, const std::string& all, std::size_t max_texels)
-		: m_pictures(pictures), m_all(all), m_max_texels(max_texels), m_stored(storedBytes(pictures)),
-		  m_most_in_all(std::min(kMaxTexelsInAll * max_texels, max_texels + kTexelsPerByte * m_stored)), m_decoded(pictures.size())
-	{
-	}
-
-	// Requests those pictures that match `isFor` and are not yet decoded.
-	void askBy(const char* worker, const std::function<bool(const EncodedAlpha&)>& isFor)
-	{
-		const std::vector<std::size_t> asked =
-			indicesWhere(m_pictures.size(), [&](std::size_t i) { return !m_decoded[i].image && isFor(m_pictures[i]); });
-		if (asked.empty())
-		{
-			return;
-		}
-		const std::size_t before = m_texels;
-		m_name = m_pictures[asked.front()].name;
-		isolate(
-			ask(worker, kDecodeAlphas), m_name,
-			IsolationLimits{std::max(kAlphaMemory, 4 * m_max_texels) + m_stored,
-							kAlphaTime_s + static_cast<int>(m_stored / kAlphaBytesPerSecond)},
-			[&](ValueWriter& to)
-			{
-				to.value(m_max_texels);
-				to.value(asked.size());
-				for (const std::size_t i : asked)
-				{
-					send(m_pictures[i], to);
-				}
-			},
-			[&](ValueReader& from)
-			{
-				m_texels = before;
-				for (const std::size_t i : asked)
-				{
-					take(i, from);
-				}
-			});
-	}
-
-	bool isDone() const
-	{
-		return std::all_of(m_decoded.begin(), m_decoded.end(), [](const auto& one) { return one.image.has_value(); });
-	}
-
-	std::vector<AlphaImage> takeImages()
-	{
-		std::vector<AlphaImage> images;
-		for (Decoded<AlphaImage>& decoded : m_decoded)
-		{
-			if (!decoded.image)
-			{
-				refuseDeclined(m_pictures[images.size()].name, decoded.defect);
-			}
-			images.push_back(std::move(*decoded.image));
-		}
-		return images;
-	}
-
-private:
-	void take(std::size_t i, ValueReader& from)
-	{
-		m_name = m_pictures[i].name;
-		Decoded<AlphaImage>& decoded = m_decoded[i];
-		receive(decoded, from);
-		m_texels += decoded.image ? m_pictures[i].uses * decoded.image->alpha.size() : 0;
-		if (m_texels > m_most_in_all)
-		{
-			throw Error(ExitCode::invalid_input, m_all + ": found masks of more than " + std::to_string(m_most_in_all) +
-													 " texels in all, expected fewer or smaller ones (max-texels)");
-		}
-	}
-
-	const std::vector<EncodedAlpha>& m_pictures;
-	const std::string& m_all;
-	std::size_t m_max_texels;
-	std::size_t m_stored; // total file size, bytes
-	std::size_t m_most_in_all;
-	std::size_t m_texels = 0;
-	std::string m_name; // picture being decoded
-	std::vector<Decoded<AlphaImage>> m_decoded;
-};
 
 // Writes nook's pictures as PNG with libpng, byte for byte what OpenImageIO 2.4 writes. Needs no worker because it reads no file.
 
@@ -311,7 +193,7 @@ Image decodeImage(std::string_view bytes, const std::string& name)
 	const IsolationLimits limits{std::min(kTables + 4200 * bytes.size(), kMostReadingMemory),
 								 kTime_s + static_cast<int>(bytes.size() / kBytesPerSecond)};
 	Decoded<Image> decoded;
-	for (const char* const worker : {looksExr(bytes) ? kExrWorker : kPictureWorker, kImageWorker})
+	for (const char* const worker : {kPictureWorker, kImageWorker})
 	{
 		if (worker == kImageWorker && !hasWorker(worker))
 		{
@@ -335,18 +217,57 @@ Image decodeImage(std::string_view bytes, const std::string& name)
 
 std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all, std::size_t max_texels)
 {
-	AlphaDecoder decoder(pictures, all, max_texels);
-	const auto isExr = [](const EncodedAlpha& picture)
+	const std::size_t stored = storedBytes(pictures);
+	const std::size_t most_in_all = std::min(kMaxTexelsInAll * max_texels, max_texels + kTexelsPerByte * stored);
+	const IsolationLimits limits{std::max(kAlphaMemory, 4 * max_texels) + stored,
+								 kAlphaTime_s + static_cast<int>(stored / kAlphaBytesPerSecond)};
+	std::vector<Decoded<AlphaImage>> decoded(pictures.size());
+	std::size_t texels = 0; // of those that are decoded, with their copies
+	for (const char* const worker : {kPictureWorker, kImageWorker})
 	{
-		return looksExr(picture.path.empty() ? picture.bytes : beginOf(picture.path));
-	};
-	decoder.askBy(kExrWorker, isExr);
-	decoder.askBy(kPictureWorker, [&](const EncodedAlpha& picture) { return !isExr(picture); });
-	if (!decoder.isDone() && hasWorker(kImageWorker))
-	{
-		decoder.askBy(kImageWorker, [](const EncodedAlpha& /*picture*/) { return true; });
+		const std::vector<std::size_t> asked = indicesWhere(pictures.size(), [&](std::size_t i) { return !decoded[i].image; });
+		if (asked.empty() || (worker == kImageWorker && !hasWorker(worker)))
+		{
+			break;
+		}
+		const std::size_t before = texels;
+		std::string name = pictures[asked.front()].name; // of the picture being decoded
+		const auto send_all = [&](ValueWriter& to)
+		{
+			to.value(max_texels);
+			to.value(asked.size());
+			for (const std::size_t i : asked)
+			{
+				send(pictures[i], to);
+			}
+		};
+		const auto take = [&](ValueReader& from)
+		{
+			texels = before;
+			for (const std::size_t i : asked)
+			{
+				name = pictures[i].name;
+				receive(decoded[i], from);
+				texels += decoded[i].image ? pictures[i].uses * decoded[i].image->alpha.size() : 0;
+				if (texels > most_in_all)
+				{
+					refuseInput(all, "masks of more than " + std::to_string(most_in_all) + " texels in all",
+								"fewer or smaller ones (max-texels)");
+				}
+			}
+		};
+		isolate(ask(worker, kDecodeAlphas), name, limits, send_all, take);
 	}
-	return decoder.takeImages();
+	std::vector<AlphaImage> images;
+	for (Decoded<AlphaImage>& one : decoded)
+	{
+		if (!one.image)
+		{
+			refuseDeclined(pictures[images.size()].name, one.defect);
+		}
+		images.push_back(std::move(*one.image));
+	}
+	return images;
 }
 
 Image readImage(const std::string& path)
@@ -354,35 +275,27 @@ Image readImage(const std::string& path)
 	return decodeImage(readFile(path), path); // throws with the system's reason
 }
 
-std::string exrBytes(const Image& image)
+// Runs without limits, since the picture is our own.
+std::string exrBytes(Image image, const char* compression)
 {
 	assert(image.values.size() == valuesOf(image.width_px, image.height_px, static_cast<int>(image.channels.size())));
-	ImageToEncode exr{.width_px = image.width_px, .height_px = image.height_px};
-	exr.channels = image.channels;
-	exr.attributes = {{"compression", "zip"}, {"capDate", ""}};
-	exr.matrices = image.matrices;
-	return encoded(std::move(exr), image.values.data(), image.notes);
+	image.notes.insert(image.notes.begin(), {{"compression", compression}, {"capDate", ""}});
+	std::string bytes;
+	isolate(
+		ask(kPictureWorker, kEncode), "image", std::nullopt, [&](ValueWriter& to) { send(image, to); },
+		[&](ValueReader& from)
+		{
+			bytes.clear();
+			from.values(bytes, kTables + 4 * sizeof(float) * image.values.size());
+		});
+	return bytes;
 }
 
-std::string exrBytes(int width_px, int height_px, std::span<const float> rgba, const Notes& notes)
+std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> values, const Notes& notes)
 {
-	assert(rgba.size() == valuesOf(width_px, height_px, 4));
-	ImageToEncode exr{.width_px = width_px, .height_px = height_px};
-	exr.channels = {"R", "G", "B", "A"};
-	exr.attributes = {{"compression", "none"}, {"capDate", ""}};
-	return encoded(std::move(exr), rgba.data(), notes);
-}
-
-std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> rgb, const Notes& notes)
-{
-	assert(rgb.size() == valuesOf(width_px, height_px, 3));
-	return fileOf({width_px, height_px, 3, 8, rgb.data()}, "sRGB", notes);
-}
-
-std::string rgbaPngBytes(int width_px, int height_px, std::span<const uint8_t> rgba)
-{
-	assert(rgba.size() == valuesOf(width_px, height_px, 4));
-	return fileOf({width_px, height_px, 4, 8, rgba.data()}, "sRGB", {});
+	const int channels = values.size() == valuesOf(width_px, height_px, 4) ? 4 : 3;
+	assert(values.size() == valuesOf(width_px, height_px, channels));
+	return fileOf({width_px, height_px, channels, 8, values.data()}, "sRGB", notes);
 }
 
 std::string alphaPngBytes(int width_px, int height_px, std::span<const uint8_t> alpha)
@@ -393,7 +306,7 @@ std::string alphaPngBytes(int width_px, int height_px, std::span<const uint8_t> 
 	{
 		rgba[4 * i + 3] = alpha[i];
 	}
-	return rgbaPngBytes(width_px, height_px, rgba);
+	return pngBytes(width_px, height_px, std::span<const uint8_t>(rgba), {});
 }
 
 std::string pngBytes(int width_px, int height_px, std::span<const uint16_t> rgba, const Notes& notes)

@@ -5,7 +5,9 @@
 #pragma once
 
 #include "core/text.h"
+#include "core/words.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -37,9 +39,18 @@ struct Image
 	std::vector<uint8_t> halves{}; // when read: 1 for channels stored as 16-bit floats; else empty
 
 	// Index of a channel, or −1.
-	int channel(std::string_view name) const;
-	// Matrix with that key (case-insensitive), or null.
-	const ImageMatrix* matrix(std::string_view key) const;
+	int channel(std::string_view name) const
+	{
+		const auto found = std::find(channels.begin(), channels.end(), name);
+		return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
+	}
+	// Matrix with that key, or null. OpenImageIO versions spell worldToCamera differently.
+	const ImageMatrix* matrix(std::string_view key) const
+	{
+		const auto found =
+			std::find_if(matrices.begin(), matrices.end(), [key](const auto& m) { return lowered(m.key) == lowered(key); });
+		return found == matrices.end() ? nullptr : &*found;
+	}
 	float at(std::size_t pixel, int channel_index) const
 	{
 		return values[pixel * channels.size() + static_cast<std::size_t>(channel_index)];
@@ -91,22 +102,16 @@ struct EncodedAlpha
 std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all,
 									 std::size_t max_texels = kMaxTexels);
 
-// 32-bit floats, scan lines, zip compression.
-std::string exrBytes(const Image& image);
+// 32-bit floats, scan lines, with that compression: zip or none.
+std::string exrBytes(Image image, const char* compression = "zip");
 
-// 8-bit sRGB; 3 bytes per pixel, rows from the top.
-std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> rgb, const Notes& notes);
-
-// 8-bit sRGB and opacity, 4 bytes per pixel, rows from the top.
-std::string rgbaPngBytes(int width_px, int height_px, std::span<const uint8_t> rgba);
+// 8-bit sRGB, or sRGB and opacity: 3 or 4 bytes per pixel, rows from the top.
+std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> values, const Notes& notes);
 
 // White with the given alpha: one byte per pixel.
 std::string alphaPngBytes(int width_px, int height_px, std::span<const uint8_t> alpha);
 
 // 16-bit data, not colour: 4 values per pixel; the fourth is not opacity and nothing is premultiplied.
 std::string pngBytes(int width_px, int height_px, std::span<const uint16_t> rgba, const Notes& notes);
-
-// 32-bit floats, 4 per pixel, uncompressed scan lines.
-std::string exrBytes(int width_px, int height_px, std::span<const float> rgba, const Notes& notes);
 
 } // namespace nook

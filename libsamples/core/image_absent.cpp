@@ -15,12 +15,12 @@ namespace
 
 } // namespace
 
-std::string exrBytes(int /*width_px*/, int /*height_px*/, std::span<const float> /*rgba*/, const Notes& /*notes*/)
+std::string exrBytes(Image /*image*/, const char* /*compression*/)
 {
 	refusePicture("EXR");
 }
 
-std::string pngBytes(int /*width_px*/, int /*height_px*/, std::span<const uint8_t> /*rgb*/, const Notes& /*notes*/)
+std::string pngBytes(int /*width_px*/, int /*height_px*/, std::span<const uint8_t> /*values*/, const Notes& /*notes*/)
 {
 	refusePicture("PNG");
 }

@@ -77,7 +77,17 @@ std::size_t channelsOf(std::string_view bytes, const std::string& name)
 
 } // namespace
 
-void answerAlphas(ValueReader& from, ValueWriter& answer, DecodeAlpha decode)
+void answerImage(ValueReader& from, ValueWriter& answer,
+				 Decoded<Image> (*decode)(const std::string& bytes, const std::string& name))
+{
+	const std::string name = from.text();
+	std::string bytes;
+	from.values(bytes, kMaxFileBytes);
+	send(decode(bytes, name), answer);
+}
+
+void answerAlphas(ValueReader& from, ValueWriter& answer,
+				  Decoded<AlphaImage> (*decode)(std::string_view bytes, const EncodedAlpha& picture, std::size_t max_texels))
 {
 	const auto max_texels = from.value<std::size_t>();
 	std::vector<EncodedAlpha> pictures(from.value<std::size_t>());

@@ -143,8 +143,15 @@ Decoded<AlphaImage> decodedAlpha(std::string_view bytes, const EncodedAlpha& pic
 int main(int argc, char** argv)
 {
 	using namespace nook;
-	constexpr std::array<WorkerFunction, 2> kFunctions{
-		{{kDecode, answerImage<decodedImage>}, {kDecodeAlphas, answerAlphas<decodedAlpha>}}};
+	static constexpr WorkerFunction kFunctions[]{{kDecode,
+												  [](ValueReader& from, ValueWriter& answer)
+												  {
+													  answerImage(from, answer, decodedImage);
+												  }},
+												 {kDecodeAlphas, [](ValueReader& from, ValueWriter& answer)
+												  {
+													  answerAlphas(from, answer, decodedAlpha);
+												  }}};
 	// Pictures are decoded one at a time, and a thread pool would count against the memory limit. OpenImageIO starts its own pool
 	// at the first call, whatever the settings.
 	const auto keepToOneThread = []

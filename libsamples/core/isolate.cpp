@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/process.h"
+#include "core/words.h"
 
 #include <map>
 #include <memory>
@@ -84,38 +85,26 @@ std::unique_ptr<ChildProcess> exchangeKept(const std::string& program, std::uniq
 	return std::exchange(workers[program], std::move(worker));
 }
 
-// Waits for a worker's answer and enforces its limits meanwhile.
-class Watch
+// Waits for a worker's answer, when called, and enforces its limits meanwhile.
+std::function<void()> watchOf(const ChildProcess& worker, const std::optional<IsolationLimits>& limits)
 {
-public:
-	Watch(const ChildProcess& worker, const std::optional<IsolationLimits>& limits)
-		: m_worker(worker), m_limits(limits), m_resident_bytes(worker.residentBytes())
+	return [&worker, limits, before = worker.residentBytes(), waits = 0]() mutable // bytes at the start of the request
 	{
-	}
-
-	void operator()()
-	{
-		while (!waitForBytes(m_worker.streams().from))
+		while (!waitForBytes(worker.streams().from))
 		{
-			m_waits += 1;
-			if (m_limits && m_waits > kWaitsASecond * m_limits->processor_s * kWaitFactor)
+			waits += 1;
+			if (limits && waits > kWaitsASecond * limits->processor_s * kWaitFactor)
 			{
 				throw StreamEnded{kTooLong};
 			}
-			const std::size_t bytes = m_worker.residentBytes();
-			if (m_limits && bytes > m_resident_bytes && bytes - m_resident_bytes > m_limits->memory_bytes)
+			const std::size_t bytes = worker.residentBytes();
+			if (limits && bytes > before && bytes - before > limits->memory_bytes)
 			{
 				throw StreamEnded{kTooLarge};
 			}
 		}
-	}
-
-private:
-	const ChildProcess& m_worker;
-	std::optional<IsolationLimits> m_limits;
-	std::size_t m_resident_bytes; // at the start of the request
-	int m_waits = 0;
-};
+	};
+}
 
 // Sends a function's name, its limits and its arguments.
 void sendRequest(const ChildProcess& worker, const Isolated& what, const std::optional<IsolationLimits>& limits,
@@ -127,16 +116,6 @@ void sendRequest(const ChildProcess& worker, const Isolated& what, const std::op
 	request.value(limits.value_or(IsolationLimits{}));
 	ask(request);
 	request.finish(ExitCode::ok, "");
-}
-
-// Throws an Error naming the file being read, with the reason why the worker ended.
-[[noreturn]] void refuse(const std::string& name, bool is_ours, const char* found)
-{
-	if (is_ours)
-	{
-		throw Error(ExitCode::runtime, name + ": found " + found + ", expected contents that can be processed");
-	}
-	throw Error(ExitCode::invalid_input, name + ": found " + found + ", expected a complete file of its format");
 }
 
 } // namespace
@@ -165,7 +144,7 @@ void isolate(const Isolated& what, const std::string& name, const std::optional<
 		{
 			worker = startWorker(what.program);
 		}
-		ValueReader answer(worker->streams().from, Watch(*worker, limits));
+		ValueReader answer(worker->streams().from, watchOf(*worker, limits));
 		const auto keep = [&]
 		{
 			if (what.keep && answer.isFinished())
@@ -192,7 +171,9 @@ void isolate(const Isolated& what, const std::string& name, const std::optional<
 			worker.reset();
 			if (!again || ended.found != nullptr)
 			{
-				refuse(name, !limits, found);
+				const bool is_ours = !limits;
+				refuseInput(name, found, is_ours ? "contents that can be processed" : "a complete file of its format",
+							is_ours ? ExitCode::runtime : ExitCode::invalid_input);
 			}
 		}
 	}

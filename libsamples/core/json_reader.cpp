@@ -262,22 +262,12 @@ std::vector<JsonValue> JsonValue::objects(std::string_view field) const
 
 std::optional<uint64_t> JsonValue::whole(std::string_view field, uint64_t most) const
 {
-	return has(field) ? std::optional(wholeNeeded(field, most)) : std::nullopt;
-}
-
-uint64_t JsonValue::wholeNeeded(std::string_view field, uint64_t most) const
-{
-	return at(field).whole(most);
+	return has(field) ? std::optional(at(field).whole(most)) : std::nullopt;
 }
 
 std::optional<std::size_t> JsonValue::index(std::string_view field, std::size_t size) const
 {
-	return has(field) ? std::optional(indexNeeded(field, size)) : std::nullopt;
-}
-
-std::size_t JsonValue::indexNeeded(std::string_view field, std::size_t size) const
-{
-	return at(field).indexInto(size);
+	return has(field) ? std::optional(at(field).indexInto(size)) : std::nullopt;
 }
 
 std::vector<std::size_t> JsonValue::indices(std::string_view field, std::size_t size) const
@@ -287,12 +277,7 @@ std::vector<std::size_t> JsonValue::indices(std::string_view field, std::size_t 
 
 double JsonValue::number(std::string_view field, double otherwise) const
 {
-	return has(field) ? numberNeeded(field) : otherwise;
-}
-
-double JsonValue::numberNeeded(std::string_view field) const
-{
-	return at(field).number();
+	return has(field) ? at(field).number() : otherwise;
 }
 
 std::vector<double> JsonValue::numbers(std::string_view field, std::size_t size) const

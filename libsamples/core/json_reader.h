@@ -56,12 +56,9 @@ struct JsonValue
 	JsonValue item(std::string_view field, std::size_t index) const; // an element, which must be an object
 	std::vector<JsonValue> objects(std::string_view field) const;    // elements of an array
 	std::optional<uint64_t> whole(std::string_view field, uint64_t most) const;
-	uint64_t wholeNeeded(std::string_view field, uint64_t most) const;
 	std::optional<std::size_t> index(std::string_view field, std::size_t size) const;
-	std::size_t indexNeeded(std::string_view field, std::size_t size) const;
 	std::vector<std::size_t> indices(std::string_view field, std::size_t size) const;
 	double number(std::string_view field, double otherwise) const;
-	double numberNeeded(std::string_view field) const;
 	std::vector<double> numbers(std::string_view field, std::size_t size) const; // exactly `size` numbers
 	bool boolean(std::string_view field, bool otherwise) const;
 	std::string text(std::string_view field, const std::string& otherwise = {}) const;

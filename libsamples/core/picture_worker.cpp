@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Worker of core/image_codec.h for PNG, JPEG, TGA, BMP and KTX2 files, without OpenImageIO, which takes thirty times as long to
-// load as these libraries. It reads the same values.
+// Worker of core/image_codec.h for PNG, JPEG, TGA, BMP, KTX2 and OpenEXR files, without OpenImageIO, which takes thirty times as
+// long to load as these libraries. It reads the same values.
 #include "core/image_codec.h"
 
 #include "core/error.h"
@@ -358,7 +358,7 @@ private:
 // Opens a file of a format known here. Returns nothing for others and for those that are broken from the start, with the defect.
 std::unique_ptr<PictureReader> openedPicture(std::string_view bytes, const std::string& name, std::string& defect)
 {
-	if (looksPng(bytes))
+	if (bytes.starts_with("\x89PNG\r\n\x1A\n"))
 	{
 		auto png = std::make_unique<PngReader>(bytes);
 		if (!png->readHeader())
@@ -388,8 +388,17 @@ float valueAt(const std::vector<uint8_t>& row, std::size_t i, int bits)
 					  : static_cast<float>(row[i]) * (1.0F / 255.0F);
 }
 
+bool looksExr(std::string_view bytes)
+{
+	return bytes.starts_with("\x76\x2F\x31\x01");
+}
+
 Decoded<Image> decoded(const std::string& bytes, const std::string& name)
 {
+	if (looksExr(bytes))
+	{
+		return decodeExr(bytes, name);
+	}
 	Decoded<Image> answer;
 	const std::unique_ptr<PictureReader> reader = openedPicture(bytes, name, answer.defect);
 	if (reader == nullptr)
@@ -429,9 +438,9 @@ Decoded<Image> decoded(const std::string& bytes, const std::string& name)
 
 Decoded<AlphaImage> decodedAlpha(std::string_view bytes, const EncodedAlpha& picture, std::size_t max_texels)
 {
-	if (isKtx2(bytes))
+	if (isKtx2(bytes) || looksExr(bytes))
 	{
-		return alphaOfKtx2(bytes, picture, max_texels);
+		return (isKtx2(bytes) ? alphaOfKtx2 : alphaOfExr)(bytes, picture, max_texels);
 	}
 	Decoded<AlphaImage> answer;
 	const std::unique_ptr<PictureReader> reader = openedPicture(bytes, picture.name, answer.defect);
@@ -466,7 +475,15 @@ Decoded<AlphaImage> decodedAlpha(std::string_view bytes, const EncodedAlpha& pic
 int main(int argc, char** argv)
 {
 	using namespace nook;
-	constexpr std::array<WorkerFunction, 2> kFunctions{
-		{{kDecode, answerImage<decoded>}, {kDecodeAlphas, answerAlphas<decodedAlpha>}}};
+	static constexpr WorkerFunction kFunctions[]{{kEncode, encodeExr},
+												 {kDecode,
+												  [](ValueReader& from, ValueWriter& answer)
+												  {
+													  answerImage(from, answer, decoded);
+												  }},
+												 {kDecodeAlphas, [](ValueReader& from, ValueWriter& answer)
+												  {
+													  answerAlphas(from, answer, decodedAlpha);
+												  }}};
 	return serveRequests(argc, argv, kFunctions);
 }

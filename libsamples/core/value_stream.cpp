@@ -20,80 +20,65 @@ namespace
 constexpr std::size_t kChunkBytes = std::size_t{1} << 16U;
 constexpr std::size_t kMaxTextBytes = std::size_t{1} << 20U;
 
-class Server
+// Reads the rest of a request: closing a socket with unread data loses the answer.
+void skip(ValueReader& request)
 {
-public:
-	Server(const WorkerStreams& streams, std::span<const WorkerFunction> functions) : m_streams(streams), m_functions(functions) {}
-
-	// Serves one request. Throws StreamEnded if there is none.
-	void serve()
+	std::array<char, 4096> rest;
+	try
 	{
-		ValueReader request(m_streams.from);
-		ValueWriter answer(m_streams.to);
-		const std::string name = request.text();
-		const auto limited = request.value<bool>();
-		const auto limits = request.value<IsolationLimits>();
-		const bool ours = limitThisProcess(limited, limits.memory_bytes, limits.processor_s);
-		try
+		while (!request.isFinished())
 		{
-			run(name, request, answer);
-			request.finish();
-			answer.finish(ExitCode::ok, "");
-		}
-		catch (const Error& error)
-		{
-			request.finish();
-			answer.finish(error.code(), error.what());
-		}
-		catch (const std::bad_alloc&)
-		{
-			skip(request);
-			answer.finish(ExitCode::runtime, ours ? kTooLarge : "memory: found none left, expected a smaller task");
-			throw StreamEnded{}; // a new worker can start clean
-		}
-		catch (const std::system_error& error)
-		{
-			if (error.code() != std::errc::resource_unavailable_try_again) // no thread could be started
-			{
-				throw;
-			}
-			skip(request);
-			answer.finish(ExitCode::runtime, std::string("threads: ") + error.what());
-			throw StreamEnded{};
+			request.bytes(rest.data(), rest.size());
 		}
 	}
-
-private:
-	// Reads the rest of a request: closing a socket with unread data loses the answer.
-	static void skip(ValueReader& request)
+	catch (const StreamEnded&)
 	{
-		std::array<char, 4096> rest;
-		try
-		{
-			while (!request.isFinished())
-			{
-				request.bytes(rest.data(), rest.size());
-			}
-		}
-		catch (const StreamEnded&)
-		{
-		}
 	}
+}
 
-	void run(const std::string& name, ValueReader& request, ValueWriter& answer) const
+// Serves one request. Throws StreamEnded if there is none.
+void serve(const WorkerStreams& streams, std::span<const WorkerFunction> functions)
+{
+	ValueReader request(streams.from);
+	ValueWriter answer(streams.to);
+	const std::string name = request.text();
+	const auto limited = request.value<bool>();
+	const auto limits = request.value<IsolationLimits>();
+	const bool ours = limitThisProcess(limited, limits.memory_bytes, limits.processor_s);
+	try
 	{
 		const auto found =
-			std::find_if(m_functions.begin(), m_functions.end(), [&](const WorkerFunction& one) { return one.name == name; });
-		if (found == m_functions.end())
+			std::find_if(functions.begin(), functions.end(), [&](const WorkerFunction& one) { return one.name == name; });
+		if (found == functions.end())
 		{
 			throw Error(ExitCode::runtime, name + ": found no such function in this worker, expected parts of nook of one build");
 		}
 		found->run(request, answer);
+		request.finish();
+		answer.finish(ExitCode::ok, "");
 	}
-
-	WorkerStreams m_streams;
-	std::span<const WorkerFunction> m_functions;
-};
+	catch (const Error& error)
+	{
+		request.finish();
+		answer.finish(error.code(), error.what());
+	}
+	catch (const std::bad_alloc&)
+	{
+		skip(request);
+		answer.finish(ExitCode::runtime, ours ? kTooLarge : "memory: found none left, expected a smaller task");
+		throw StreamEnded{}; // a new worker can start clean
+	}
+	catch (const std::system_error& error)
+	{
+		if (error.code() != std::errc::resource_unavailable_try_again) // no thread could be started
+		{
+			throw;
+		}
+		skip(request);
+		answer.finish(ExitCode::runtime, std::string("threads: ") + error.what());
+		throw StreamEnded{};
+	}
+}
 
 } // namespace
 
@@ -247,9 +232,9 @@ int serveRequests(int argc, char** argv, std::span<const WorkerFunction> functio
 		ValueWriter greeting(streams->to);
 		greeting.text(NOOK_WORKER_VERSION);
 		greeting.finish(ExitCode::ok, "");
-		for (Server server(*streams, functions);;)
+		for (;;)
 		{
-			server.serve();
+			serve(*streams, functions);
 		}
 	}
 	catch (const StreamEnded&)

@@ -2,6 +2,7 @@
 // Sends plain values through a stream to another nook process. A message ends with an exit code and a line of text.
 #pragma once
 
+#include "core/archive.h"
 #include "core/error.h"
 #include "core/process.h"
 
@@ -101,5 +102,21 @@ private:
 	std::size_t m_chunk_left = 0;
 	bool m_finished = false;
 };
+
+// Sends and receives what visitors pass (archive.h). Longer texts and lists than `most_bytes` are rejected as damaged.
+template <class Value> void send(const Value& value, ValueWriter& to)
+{
+	Archive archive([&to](void* data, std::size_t size) { to.bytes(data, size); }, false, 0);
+	archive(const_cast<Value&>(value)); // NOLINT: writing changes nothing
+}
+template <class Value> void receive(Value& value, ValueReader& from, std::size_t most_bytes = std::size_t{1} << 32U)
+{
+	Archive archive([&from](void* data, std::size_t size) { from.bytes(data, size); }, true, most_bytes);
+	archive(value);
+	if (!archive.isComplete())
+	{
+		throw StreamEnded{};
+	}
+}
 
 } // namespace nook

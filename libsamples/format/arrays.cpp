@@ -323,8 +323,9 @@ TileTexture textureOf(const PatternTile& tile, bool layered)
 
 std::string tileExr(const PatternTile& tile, const TileQuality& quality, const EmitContext& context)
 {
-	const TileTexture texture = textureOf(tile);
-	return exrBytes(texture.width_px, texture.height_px, texture.rgba, textureNotes(texture, quality, context));
+	TileTexture texture = textureOf(tile);
+	const Notes notes = textureNotes(texture, quality, context);
+	return exrBytes({texture.width_px, texture.height_px, {"R", "G", "B", "A"}, std::move(texture.rgba), notes, {}}, "none");
 }
 
 std::string tilePng(const PatternTile& tile, const TileQuality& quality, const EmitContext& context)

@@ -7,6 +7,7 @@
 #include "core/lists.h"
 #include "core/system.h"
 #include "core/text.h"
+#include "core/words.h"
 #include "format/arrays.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
@@ -27,8 +28,8 @@ constexpr std::array<std::string_view, 9> kFormats{".json", ".h", ".glsl", ".hls
 [[noreturn]] void refuseFormat(const std::string& path, std::span<const std::string_view> formats)
 {
 	const std::string ending = nativePath(path).extension().string();
-	throw Error(ExitCode::usage, path + ": found " + (ending.empty() ? "no ending" : "the ending " + ending) +
-									 ", expected one of " + joinedText(formats, ", "));
+	refuseInput(path, ending.empty() ? "no ending" : "the ending " + ending, "one of " + joinedText(formats, ", "),
+				ExitCode::usage);
 }
 
 std::string sourceBytes(std::string_view format, const Source& source, std::span<const std::string_view> formats)
@@ -202,8 +203,7 @@ std::variant<PatternFile, TileFile> readInput(const std::string& path, std::opti
 	TileFile file = readTile(path);
 	if (domain && *domain != file.tile.domain)
 	{
-		throw Error(ExitCode::invalid_input, path + ": domain: found " + std::string(nameOf(file.tile.domain)) + ", expected " +
-												 std::string(nameOf(*domain)));
+		refuseInput(path + ": domain", std::string(nameOf(file.tile.domain)), std::string(nameOf(*domain)));
 	}
 	return file;
 }
@@ -231,9 +231,8 @@ void checkProgressive(const std::variant<PatternFile, TileFile>& input, const st
 	}
 	if (!progressive)
 	{
-		throw Error(ExitCode::invalid_input, path +
-												 ": found samples in any order, expected for bands a pattern in progressive order, "
-												 "a tile that turns it, or a progressive tile");
+		refuseInput(path, "samples in any order",
+					"for bands a pattern in progressive order, a tile that turns it, or a progressive tile");
 	}
 }
 

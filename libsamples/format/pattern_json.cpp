@@ -7,6 +7,7 @@
 #include "core/lists.h"
 #include "core/round.h"
 #include "core/text.h"
+#include "core/words.h"
 #include "format/arrays.h"
 #include "format/json_fields.h"
 
@@ -87,11 +88,6 @@ glm::dvec3 toFloats(const glm::dvec3& p)
 	return {roundToFloat(p.x), roundToFloat(p.y), roundToFloat(p.z)};
 }
 
-[[noreturn]] void fail(const std::string& where, const std::string& found, const std::string& expected)
-{
-	throw Error(ExitCode::invalid_input, where + ": found " + found + ", expected " + expected);
-}
-
 constexpr std::size_t kWeightsPerLine = 8;
 
 std::size_t dimensions(Domain domain)
@@ -153,7 +149,7 @@ struct Sheet
 
 [[noreturn]] void fail(const std::string& path, std::size_t line, const std::string& found, const std::string& expected)
 {
-	throw Error(ExitCode::invalid_input, path + ": row " + std::to_string(line) + ": found " + found + ", expected " + expected);
+	refuseInput(path + ": row " + std::to_string(line), found, expected);
 }
 
 std::string_view trimmed(std::string_view text)
@@ -260,7 +256,7 @@ Sheet readSheet(std::string_view text, const std::string& path)
 	}
 	if (sheet.rows.empty())
 	{
-		throw Error(ExitCode::invalid_input, path + ": found no samples, expected rows of x,y or x,y,z and perhaps weight");
+		refuseInput(path, "no samples", "rows of x,y or x,y,z and perhaps weight");
 	}
 	return sheet;
 }
@@ -315,8 +311,7 @@ Domain domainOf(const Sheet& sheet, std::optional<Domain> asked, const std::vect
 {
 	if (asked.has_value() && sheet.domain.has_value() && *asked != *sheet.domain)
 	{
-		throw Error(ExitCode::invalid_input, sheet.path + ": domain: found " + jsonText(nameOf(*sheet.domain)) + ", expected " +
-												 jsonText(nameOf(*asked)) + " as asked for");
+		refuseInput(sheet.path + ": domain", jsonText(nameOf(*sheet.domain)), jsonText(nameOf(*asked)) + " as asked for");
 	}
 	const bool has_z = columnOf(header, "z").has_value();
 	const std::optional<Domain> said = asked.has_value() ? asked : sheet.domain;
@@ -325,9 +320,8 @@ Domain domainOf(const Sheet& sheet, std::optional<Domain> asked, const std::vect
 	if (!columnOf(header, "x").has_value() || !columnOf(header, "y").has_value() || has_z == disk ||
 		(columnOf(header, "half_length").has_value() && !disk))
 	{
-		throw Error(ExitCode::invalid_input, sheet.path + ": columns: found " + joinedText(header, ",") + ", expected " +
-												 (disk ? "x,y" : "x,y,z") + " and perhaps weight for the domain " +
-												 std::string(nameOf(domain)));
+		refuseInput(sheet.path + ": columns", joinedText(header, ","),
+					(disk ? "x,y" : "x,y,z") + (" and perhaps weight for the domain " + std::string(nameOf(domain))));
 	}
 	return domain;
 }
@@ -395,8 +389,7 @@ PatternFile readPattern(const std::string& path, std::optional<Domain> domain)
 	PatternFile file = parsePatternJson(text, path);
 	if (domain.has_value() && file.pattern.domain != *domain)
 	{
-		throw Error(ExitCode::invalid_input, path + ": domain: found " + jsonText(nameOf(file.pattern.domain)) + ", expected " +
-												 jsonText(nameOf(*domain)) + " as asked for");
+		refuseInput(path + ": domain", jsonText(nameOf(file.pattern.domain)), jsonText(nameOf(*domain)) + " as asked for");
 	}
 	return file;
 }
@@ -408,7 +401,8 @@ glm::dvec3 checkedPoint(Domain domain, const glm::dvec3& point, const std::strin
 		const glm::dvec3 rounded = toFloats(point);
 		if (!(rounded.x >= 0.0 && rounded.x < 1.0 && rounded.y >= 0.0 && rounded.y < 1.0))
 		{
-			fail(where, roundedText(point.x, 7) + ", " + roundedText(point.y, 7), "an azimuth and a jitter from 0 to below 1");
+			refuseInput(where, roundedText(point.x, 7) + ", " + roundedText(point.y, 7),
+						"an azimuth and a jitter from 0 to below 1");
 		}
 		return rounded;
 	}
@@ -417,18 +411,18 @@ glm::dvec3 checkedPoint(Domain domain, const glm::dvec3& point, const std::strin
 	{
 		if (!(std::fabs(length - 1.0) <= kUnitLength))
 		{
-			fail(where, "a direction of length " + roundedText(length, 7), "length 1 (within 1e-5)");
+			refuseInput(where, "a direction of length " + roundedText(length, 7), "length 1 (within 1e-5)");
 		}
 		if (domain == Domain::hemisphere && point.z < -1e-6)
 		{
-			fail(where, "z = " + roundedText(point.z, 7), "a direction of the upper hemisphere, z >= 0");
+			refuseInput(where, "z = " + roundedText(point.z, 7), "a direction of the upper hemisphere, z >= 0");
 		}
 		return toFloats(point);
 	}
 	if (!(length <= 1.0 + kOutside))
 	{
-		fail(where, "a point at distance " + roundedText(length, 7) + " from the centre",
-			 domain == Domain::disk ? "a point in the unit disk" : "a point in the unit ball");
+		refuseInput(where, "a point at distance " + roundedText(length, 7) + " from the centre",
+					domain == Domain::disk ? "a point in the unit disk" : "a point in the unit ball");
 	}
 	glm::dvec3 inside = toFloats(point);
 	for (double shrink = 1.0; glm::dot(inside, inside) > 1.0;)
@@ -446,14 +440,14 @@ void checkWeights(std::vector<double>& weights, const std::string& where, const 
 	{
 		if (!(weights[i] >= 0.0))
 		{
-			fail(name_of(i), "the weight " + roundedText(weights[i], 7), "a weight of 0 or more");
+			refuseInput(name_of(i), "the weight " + roundedText(weights[i], 7), "a weight of 0 or more");
 		}
 		sum += weights[i];
 		weights[i] = roundToFloat(weights[i]);
 	}
 	if (!(std::fabs(sum - 1.0) <= kWeightSum))
 	{
-		fail(where, "the sum " + roundedText(sum, 7), "the sum 1 (within 1e-4)");
+		refuseInput(where, "the sum " + roundedText(sum, 7), "the sum 1 (within 1e-4)");
 	}
 }
 

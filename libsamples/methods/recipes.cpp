@@ -61,7 +61,7 @@ MethodRecipe recipeOf(const JsonValue& json)
 	{
 		name.expected("a screen-space method");
 	}
-	MethodRecipe recipe{row->method, json.numberNeeded("radius"), {}};
+	MethodRecipe recipe{row->method, json.at("radius").number(), {}};
 	if (!(recipe.radius >= 1e-3 && recipe.radius <= 1e3))
 	{
 		json.fail("radius", numberText(recipe.radius), "a number from 0.001 to 1000");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/builtin.h"
 
+#include "core/decimal.h"
 #include "core/lists.h"
 #include "core/math.h"
 #include "core/words.h"
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <iterator>
 
 namespace nook
@@ -37,14 +37,13 @@ constexpr std::array<Builtin, 7> kBuiltins{{{"cornell", makeCornell},
 
 std::size_t triangleCount(std::string_view text, const Builtin& level)
 {
-	std::size_t count = 0;
-	const std::from_chars_result result = std::from_chars(text.data(), text.data() + text.size(), count);
-	if (result.ec != std::errc{} || result.ptr != text.data() + text.size() || count < level.least || count > level.most)
+	const std::optional<std::size_t> count = numberFrom<std::size_t>(text);
+	if (!count || *count < level.least || *count > level.most)
 	{
 		refuseInput("builtin:" + std::string(level.name), "'" + std::string(text) + "'",
 					std::to_string(level.least) + " to " + std::to_string(level.most) + " triangles", ExitCode::usage);
 	}
-	return count;
+	return *count;
 }
 
 // Test cases with closed forms. Each stands on its own square of floor, 100 m wide, centred 100 m from the next one, so that with a

@@ -380,15 +380,6 @@ void LevelBuilder::addQuad(uint32_t a, uint32_t b, uint32_t c, uint32_t d)
 	addTriangle(a, c, d);
 }
 
-void LevelBuilder::reserve(std::size_t vertices, std::size_t triangles)
-{
-	m_level.positions.reserve(vertices);
-	m_level.normals.reserve(vertices);
-	m_level.uvs.reserve(vertices);
-	m_level.triangles.reserve(triangles);
-	m_level.materials.reserve(triangles);
-}
-
 Level LevelBuilder::finish()
 {
 	return std::move(m_level);

@@ -82,7 +82,6 @@ public:
 	void addTriangle(uint32_t a, uint32_t b, uint32_t c);
 	// Counter-clockwise seen from the front.
 	void addQuad(uint32_t a, uint32_t b, uint32_t c, uint32_t d);
-	void reserve(std::size_t vertices, std::size_t triangles);
 
 	Level finish();
 

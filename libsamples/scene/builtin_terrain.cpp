@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace nook
@@ -115,36 +116,20 @@ public:
 	// Area-weighted mean of the up to six adjacent triangles.
 	glm::dvec3 normal(std::size_t x, std::size_t z) const
 	{
-		struct Step
+		static constexpr std::array<glm::ivec2, 7> kAround{
+			{{1, 0}, {0, -1}, {-1, -1}, {-1, 0}, {0, 1}, {1, 1}, {1, 0}}}; // x and z, counter-clockwise from above
+		const auto edge = [this, x, z](glm::ivec2 step) -> std::optional<glm::dvec3>
 		{
-			int x;
-			int z;
-		};
-		static constexpr Step kAround[7] = {{1, 0}, {0, -1}, {-1, -1}, {-1, 0},
-											{0, 1}, {1, 1},  {1, 0}}; // counter-clockwise from above
-		const auto isThere = [this, x, z](Step step)
-		{
-			const auto within = [this](std::size_t at, int by)
-			{
-				return by < 0 ? at > 0 : by == 0 || at < m_cells;
-			};
-			return within(x, step.x) && within(z, step.z);
-		};
-		const auto edge = [this, x, z](Step step)
-		{
-			const auto moved = [](std::size_t at, int by)
-			{
-				return by < 0 ? at - 1 : at + static_cast<std::size_t>(by);
-			};
-			return position(moved(x, step.x), moved(z, step.z)) - position(x, z);
+			const std::size_t to_x = x + static_cast<std::size_t>(step.x); // wraps around below 0
+			const std::size_t to_z = z + static_cast<std::size_t>(step.y);
+			return to_x > m_cells || to_z > m_cells ? std::nullopt : std::optional(position(to_x, to_z) - position(x, z));
 		};
 		glm::dvec3 sum(0.0);
-		for (int i = 0; i < 6; ++i)
+		for (std::size_t i = 0; i < 6; ++i)
 		{
-			if (isThere(kAround[i]) && isThere(kAround[i + 1]))
-			{
-				sum += glm::cross(edge(kAround[i]), edge(kAround[i + 1]));
-			}
+			const std::optional<glm::dvec3> from = edge(kAround[i]);
+			const std::optional<glm::dvec3> to = edge(kAround[i + 1]);
+			sum += from && to ? glm::cross(*from, *to) : glm::dvec3(0.0);
 		}
 		return glm::normalize(sum);
 	}
@@ -346,11 +331,6 @@ public:
 		}
 	}
 
-	std::size_t rings() const
-	{
-		return m_rings;
-	}
-
 	glm::dvec3 point(std::size_t ring, std::size_t at) const
 	{
 		return m_points[(ring % m_rings) * m_around + at % m_around];
@@ -412,7 +392,6 @@ Level makeHeightfield(std::size_t triangles)
 	}
 	const Grid grid(cells);
 	LevelBuilder builder;
-	builder.reserve((cells + 1) * (cells + 1) + 24 * cells + 1, 2 * cells * cells + 12 * cells);
 	builder.beginMesh("ground", builder.addMaterial("ground"));
 	addGround(builder, grid, cells);
 	addUnderside(builder, grid, cells);
@@ -449,7 +428,6 @@ Level makeCave(std::size_t triangles)
 	const auto [along, mouth, back] = rings_of(around);
 	const Rings rings(stationsOf(along, mouth, back), around, 2.0 * kTunnelHalf / static_cast<double>(along));
 	LevelBuilder builder;
-	builder.reserve(rings.rings() * around, 2 * rings.rings() * around);
 	builder.beginMesh("rock", builder.addMaterial("rock"));
 	rings.addTo(builder);
 	const auto look = [&](const char* name, double from_x, double to_x, double up_m)

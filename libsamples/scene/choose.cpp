@@ -252,8 +252,7 @@ std::string pathOf(const Level& level, const Mesh& mesh)
 LevelPart partOf(const Level& level, std::span<const uint8_t> marks, int threads)
 {
 	LevelPart part{level, std::vector<uint32_t>(level.positions.size(), UINT32_MAX)};
-	std::vector<uint32_t> before;
-	compactLevel(part.level, marks, threads, &before);
+	const std::vector<uint32_t> before = compactLevel(part.level, marks, threads);
 	for (uint32_t i = 0; i < before.size(); ++i)
 	{
 		part.vertices[before[i]] = i;

@@ -48,15 +48,7 @@ bool convert(const draco::PointAttribute& attribute, uint32_t points, std::size_
 
 bool convert(const draco::PointAttribute& attribute, uint32_t points, const DracoAttribute& as, std::vector<char>& bytes)
 {
-	switch (as.component)
-	{
-	case 5120: return convert<int8_t>(attribute, points, as.components, bytes);
-	case 5121: return convert<uint8_t>(attribute, points, as.components, bytes);
-	case 5122: return convert<int16_t>(attribute, points, as.components, bytes);
-	case 5123: return convert<uint16_t>(attribute, points, as.components, bytes);
-	case 5125: return convert<uint32_t>(attribute, points, as.components, bytes);
-	default: return convert<float>(attribute, points, as.components, bytes);
-	}
+	return withComponent(as.component, [&](auto zero) { return convert<decltype(zero)>(attribute, points, as.components, bytes); });
 }
 
 void send(const std::string& name, const draco::Mesh& mesh, const std::vector<DracoAttribute>& attributes, ValueWriter& answer)

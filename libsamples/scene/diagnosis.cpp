@@ -355,7 +355,12 @@ public:
 		edges();
 		emptyMeshes();
 		vertices();
-		compactLevel(m_level, marked([&](std::size_t i) { return m_fates[i] == Fate::kept; }), m_threads, before);
+		std::vector<uint32_t> kept =
+			compactLevel(m_level, marked([&](std::size_t i) { return m_fates[i] == Fate::kept; }), m_threads);
+		if (before != nullptr)
+		{
+			*before = std::move(kept);
+		}
 		return std::move(m_diagnosis);
 	}
 

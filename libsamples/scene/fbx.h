@@ -19,7 +19,7 @@
 namespace nook
 {
 
-// A value of a node. Arrays stay encoded until numbersOf() or wholesOf() reads them, since most are not needed.
+// A value of a node. Arrays stay encoded until arrayOf() reads them, since most are not needed.
 struct FbxValue
 {
 	enum class Kind : uint8_t
@@ -82,7 +82,8 @@ public:
 	[[noreturn]] void fail(const std::string& where, const std::string& found, const std::string& expected) const;
 
 private:
-	template <class T> void decode(const FbxValue& value, const std::string& where, std::vector<T>& into) const;
+	// `what`: the numbers that are expected, for errors.
+	void decode(const FbxValue& value, const std::string& where, const char* what, std::vector<double>& into) const;
 
 	std::string m_path;
 	std::string m_bytes;
@@ -95,18 +96,9 @@ private:
 std::optional<double> numberAt(const FbxNode& node, std::size_t index);
 std::optional<int64_t> wholeAt(const FbxNode& node, std::size_t index);
 
-// The entries of a Properties70, by name.
-class FbxProperties
-{
-public:
-	FbxProperties() = default;
-	explicit FbxProperties(const FbxNode& parent);
-
-	const FbxNode* find(std::string_view name) const; // or null
-
-private:
-	std::vector<const FbxNode*> m_sorted;
-};
+// The entries of a Properties70, by name; the first of several.
+using FbxProperties = std::map<std::string_view, const FbxNode*>;
+FbxProperties propertiesOf(const FbxNode& parent);
 
 struct FbxLink
 {

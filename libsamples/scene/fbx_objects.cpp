@@ -16,11 +16,6 @@ namespace
 
 constexpr std::size_t kFirstValue = 4; // of a property, after its name, two types and flags
 
-std::string_view nameOf(const FbxNode* property)
-{
-	return property->values.front().bytes;
-}
-
 // "Model::Box" in ASCII files, "Box\0\1Model" in binary ones.
 std::string objectName(const std::string& text)
 {
@@ -217,15 +212,10 @@ private:
 		}
 		frame.hidden = inherits_off || isOff(node);
 
-		FbxPlace& place = m_places.emplace_back();
-		place.object = node;
-		place.parent = m_parents[node] > 1 ? m_parents[node] - 1 : 0; // 1 is the root
-		place.world = frame.world;
-		place.geometric = matrixOf(scaled(turnOf(vector("GeometricRotation", 0.0)), vector("GeometricScaling", 1.0)),
-								   vector("GeometricTranslation", 0.0));
-		place.in_scene = in_scene;
-		place.hidden = frame.hidden || isNotShown(object);
-		place.lower_lod = frame.lower_lod;
+		const std::size_t parent = m_parents[node] > 1 ? m_parents[node] - 1 : 0; // 1 is the root
+		const glm::dmat4 geometric = matrixOf(scaled(turnOf(vector("GeometricRotation", 0.0)), vector("GeometricScaling", 1.0)),
+											  vector("GeometricTranslation", 0.0));
+		m_places.push_back({node, parent, frame.world, geometric, in_scene, frame.hidden || isNotShown(object), frame.lower_lod});
 	}
 
 	const FbxObjects& m_objects;
@@ -236,23 +226,17 @@ private:
 
 } // namespace
 
-FbxProperties::FbxProperties(const FbxNode& parent)
+FbxProperties propertiesOf(const FbxNode& parent)
 {
+	FbxProperties properties;
 	for (const FbxNode& property : parent.childrenOf("Properties70"))
 	{
 		if (property.name == "P" && !property.values.empty() && property.values.front().kind == FbxValue::Kind::text)
 		{
-			m_sorted.push_back(&property);
+			properties.try_emplace(property.values.front().bytes, &property);
 		}
 	}
-	std::stable_sort(m_sorted.begin(), m_sorted.end(), [](const FbxNode* a, const FbxNode* b) { return nameOf(a) < nameOf(b); });
-}
-
-const FbxNode* FbxProperties::find(std::string_view name) const
-{
-	const auto found = std::lower_bound(m_sorted.begin(), m_sorted.end(), name,
-										[](const FbxNode* property, std::string_view wanted) { return nameOf(property) < wanted; });
-	return found == m_sorted.end() || nameOf(*found) != name ? nullptr : *found;
+	return properties;
 }
 
 FbxObjects::FbxObjects(const std::string& path) : m_file(path)
@@ -271,7 +255,7 @@ void FbxObjects::readTemplates()
 			if (type.name == "ObjectType" && from.name == "PropertyTemplate")
 			{
 				const std::string name = m_file.text(type, 0);
-				m_templates.try_emplace(name == "NodeAttribute" ? name + "/" + m_file.text(from, 0) : name, from);
+				m_templates.try_emplace(name == "NodeAttribute" ? name + "/" + m_file.text(from, 0) : name, propertiesOf(from));
 			}
 		}
 	}
@@ -295,7 +279,7 @@ void FbxObjects::readObjects()
 		object.type = node.name;
 		object.name = objectName(m_file.text(node, 1));
 		object.kind = m_file.text(node, 2);
-		object.own = FbxProperties(node);
+		object.own = propertiesOf(node);
 		const auto common =
 			m_templates.find(object.type == "NodeAttribute" ? "NodeAttribute/Fbx" + object.kind : std::string(object.type));
 		object.common = common == m_templates.end() ? nullptr : &common->second;
@@ -325,8 +309,14 @@ void FbxObjects::readConnections()
 
 const FbxNode* FbxObjects::property(const FbxObject& object, std::string_view name) const
 {
-	const FbxNode* const own = object.own.find(name);
-	return own != nullptr || object.common == nullptr ? own : object.common->find(name);
+	for (const FbxProperties* const properties : {&object.own, object.common})
+	{
+		if (properties != nullptr && properties->contains(name))
+		{
+			return properties->at(name);
+		}
+	}
+	return nullptr;
 }
 
 double FbxObjects::number(const FbxObject& object, std::string_view name, double fallback) const

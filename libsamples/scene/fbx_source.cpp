@@ -4,8 +4,8 @@
 
 #include "core/base64.h"
 #include "core/words.h"
-#include "scene/cut_faces.h"
 #include "scene/load_parts.h"
+#include "scene/mesh_text.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -35,7 +35,7 @@ FileAxes axesOf(const FbxObjects& objects)
 	FbxObject settings;
 	if (const FbxNode* const node = objects.file().root().child("GlobalSettings"))
 	{
-		settings.own = FbxProperties(*node);
+		settings.own = propertiesOf(*node);
 	}
 	constexpr std::array<std::array<const char*, 2>, 3> kNames{
 		{{"CoordAxis", "CoordAxisSign"}, {"UpAxis", "UpAxisSign"}, {"FrontAxis", "FrontAxisSign"}}};
@@ -92,8 +92,9 @@ public:
 		m_tallies["points-or-lines"].add(m_faces.lines.first, m_faces.lines.count);
 		m_tallies["bad-polygons"] = m_faces.bad_polygons;
 		sendTallies(m_tallies, m_to);
-		m_to.value(uint64_t{0}); // number of files read
-		m_to.value(uint64_t{0}); // number of missing files
+		const std::vector<std::string> none; // further files that were read, or are missing
+		nook::send(none, m_to);
+		nook::send(none, m_to);
 	}
 
 private:
@@ -184,18 +185,15 @@ private:
 		const FbxObject& material = m_objects[index];
 		const Texture opacity = index == 0 ? Texture{} : textureOf(material, kOpacity);
 		const Texture colour = index == 0 ? Texture{} : textureOf(material, kColour);
-		m_to.text(index == 0 ? "default" : material.name);
-		m_to.value(static_cast<float>(index == 0 ? 1.0 : opacityOf(material, !opacity.name.empty())));
-		m_to.value(0); // two-sided: FBX has it only on nodes, and exporters set it arbitrarily
+		FileMaterial made; // two_sided: FBX has it only on nodes, and exporters set it arbitrarily
+		made.name = index == 0 ? "default" : material.name;
+		made.alpha = static_cast<float>(index == 0 ? 1.0 : opacityOf(material, !opacity.name.empty()));
 		const glm::dvec3 diffuse = m_objects.vector(material, "DiffuseColor", glm::dvec3(1.0));
-		m_to.value(glm::vec3(glm::clamp(diffuse * m_objects.number(material, "DiffuseFactor", 1.0), 0.0, 1.0)));
-		for (const Texture* const texture : {&opacity, &colour})
-		{
-			m_to.text(texture->name);
-			m_to.value(MaskUse{texture->wrap_u, texture->wrap_v, MaskChannel::alpha_or_first});
-			m_to.value(glm::dmat3(1.0)); // already applied to the coordinates
-			m_to.values(texture->bytes);
-		}
+		made.colour = glm::clamp(diffuse * m_objects.number(material, "DiffuseFactor", 1.0), 0.0, 1.0);
+		made.opacity = opacity;
+		made.picture = colour;
+		made.opacity.uv_of_set = made.picture.uv_of_set = glm::dmat3(1.0); // already applied to the coordinates
+		nook::send(made, m_to);
 		m_textures.push_back(opacity.name.empty() ? colour : opacity);
 		m_textures.back().bytes.clear();
 	}
@@ -204,7 +202,7 @@ private:
 	// if it is neither 0 nor 1, since exporters write 1 for opaque materials. A texture replaces the colour.
 	double opacityOf(const FbxObject& material, bool has_texture) const
 	{
-		if (material.own.find("Opacity") != nullptr)
+		if (material.own.contains("Opacity"))
 		{
 			return m_objects.number(material, "Opacity", 1.0);
 		}
@@ -213,12 +211,12 @@ private:
 		{
 			return 1.0;
 		}
-		if (material.own.find("TransparentColor") != nullptr)
+		if (material.own.contains("TransparentColor"))
 		{
 			const glm::dvec3 colour = m_objects.vector(material, "TransparentColor", glm::dvec3(0.0));
 			return 1.0 - factor * (colour.x + colour.y + colour.z) / 3.0;
 		}
-		return material.own.find("TransparencyFactor") == nullptr || factor == 1.0 ? 1.0 : 1.0 - factor;
+		return !material.own.contains("TransparencyFactor") || factor == 1.0 ? 1.0 : 1.0 - factor;
 	}
 
 	// Textures connected to a property of a material; the first one represents a layered texture.
@@ -241,6 +239,7 @@ private:
 			{
 				const FbxObject& object = m_objects[index];
 				Texture texture;
+				texture.channel = MaskChannel::alpha_or_first;
 				texture.name = m_file.textBelow(*object.node, "RelativeFilename");
 				texture.name = texture.name.empty() ? m_file.textBelow(*object.node, "FileName") : texture.name;
 				if (const FbxNode* const content = contentOf(object))

@@ -6,6 +6,7 @@
 
 #include "core/decimal.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "core/words.h"
 #include "scene/mesh_text.h"
 
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <type_traits>
@@ -388,9 +388,9 @@ private:
 	static FbxValue scalar(std::string_view text)
 	{
 		FbxValue value;
-		const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), value.whole);
-		if (wrong == std::errc{} && end == text.data() + text.size())
+		if (const std::optional<int64_t> whole = nook::numberFrom<int64_t>(text))
 		{
+			value.whole = *whole;
 			return value;
 		}
 		value.kind = FbxValue::Kind::text;
@@ -463,42 +463,11 @@ std::string inflated(const FbxValue& value, uint64_t size)
 	return result == Z_OK && written == size ? plain : std::string();
 }
 
-// Converts a word or number to an integer of type T, if it is one.
-template <class T> bool convert(double number, T& into)
+// The integer that a number is, if it is one.
+std::optional<int64_t> wholeFrom(double number)
 {
-	if constexpr (std::is_same_v<T, int64_t>)
-	{
-		if (!(std::fabs(number) < 0x1p53) || std::floor(number) != number)
-		{
-			return false;
-		}
-	}
-	into = static_cast<T>(number);
-	return true;
-}
-
-template <class T> bool convert(std::string_view word, T& into)
-{
-	if constexpr (std::is_same_v<T, int64_t>)
-	{
-		const auto [end, wrong] = std::from_chars(word.data(), word.data() + word.size(), into);
-		if (wrong == std::errc{} && end == word.data() + word.size())
-		{
-			return true;
-		}
-	}
-	const std::optional<double> number = numberOf(word);
-	return number && convert(*number, into);
-}
-
-std::string quotedNumber(double number)
-{
-	return numberText(number);
-}
-
-std::string quotedNumber(std::string_view word)
-{
-	return quoted(word);
+	const bool is_whole = std::fabs(number) < 0x1p53 && std::floor(number) == number;
+	return is_whole ? std::optional(static_cast<int64_t>(number)) : std::nullopt;
 }
 
 } // namespace
@@ -528,13 +497,12 @@ std::optional<double> numberAt(const FbxNode& node, std::size_t index)
 
 std::optional<int64_t> wholeAt(const FbxNode& node, std::size_t index)
 {
-	int64_t whole = 0;
 	if (index < node.values.size() && node.values[index].kind == FbxValue::Kind::whole)
 	{
 		return node.values[index].whole; // an identifier may need all 64 bits
 	}
 	const std::optional<double> number = numberAt(node, index);
-	return number && convert(*number, whole) ? std::optional(whole) : std::nullopt;
+	return number ? wholeFrom(*number) : std::nullopt;
 }
 
 FbxFile::FbxFile(std::string path) : m_path(std::move(path)), m_bytes(readFile(m_path))
@@ -580,20 +548,21 @@ std::string FbxFile::textBelow(const FbxNode& parent, std::string_view name) con
 	return node == nullptr ? "" : text(*node, 0);
 }
 
-template <class T> void FbxFile::decode(const FbxValue& value, const std::string& where, std::vector<T>& into) const
+void FbxFile::decode(const FbxValue& value, const std::string& where, const char* what, std::vector<double>& into) const
 {
-	const auto take = [&](const auto& number)
+	const auto take = [&](std::string_view word)
 	{
-		if (!convert(number, into.emplace_back()))
-		{
-			fail(where, quotedNumber(number), std::is_same_v<T, int64_t> ? "whole numbers" : "numbers");
-		}
+		const std::optional<double> number = numberOf(word);
+		number ? into.push_back(*number) : fail(where, quoted(word), what);
 	};
+	if (value.kind == FbxValue::Kind::text)
+	{
+		take(value.bytes);
+		return;
+	}
 	if (value.kind != FbxValue::Kind::array)
 	{
-		value.kind == FbxValue::Kind::whole    ? take(static_cast<double>(value.whole))
-		: value.kind == FbxValue::Kind::number ? take(value.number)
-											   : take(value.bytes);
+		into.push_back(value.kind == FbxValue::Kind::whole ? static_cast<double>(value.whole) : value.number);
 		return;
 	}
 	if (value.type == 0)
@@ -627,11 +596,11 @@ template <class T> void FbxFile::decode(const FbxValue& value, const std::string
 		{
 			switch (value.type)
 			{
-			case 'd': take(numberFrom<double>(at, m_big_endian)); break;
-			case 'f': take(static_cast<double>(numberFrom<float>(at, m_big_endian))); break;
-			case 'i': take(static_cast<double>(numberFrom<int32_t>(at, m_big_endian))); break;
-			case 'l': take(static_cast<double>(numberFrom<int64_t>(at, m_big_endian))); break;
-			default: take(static_cast<double>(static_cast<unsigned char>(*at))); break;
+			case 'd': into.push_back(numberFrom<double>(at, m_big_endian)); break;
+			case 'f': into.push_back(numberFrom<float>(at, m_big_endian)); break;
+			case 'i': into.push_back(numberFrom<int32_t>(at, m_big_endian)); break;
+			case 'l': into.push_back(static_cast<double>(numberFrom<int64_t>(at, m_big_endian))); break;
+			default: into.push_back(static_cast<unsigned char>(*at)); break;
 			}
 		}
 	}
@@ -643,21 +612,30 @@ template <class T> void FbxFile::decode(const FbxValue& value, const std::string
 
 template <class T> std::vector<T> FbxFile::arrayOf(const FbxNode& node, const std::string& where) const
 {
-	std::vector<T> numbers;
-	if (node.values.size() == 1)
-	{
-		decode(node.values.front(), where, numbers);
-		return numbers;
-	}
+	constexpr bool kWhole = std::is_same_v<T, int64_t>;
+	const char* const what = kWhole ? "whole numbers" : "numbers";
+	std::vector<double> numbers;
 	for (const FbxValue& value : node.values)
 	{
-		if (value.kind == FbxValue::Kind::array)
+		if (node.values.size() > 1 && value.kind == FbxValue::Kind::array)
 		{
 			fail(where, "an array among other values", "one array");
 		}
-		decode(value, where, numbers);
+		decode(value, where, what, numbers);
 	}
-	return numbers;
+	if constexpr (!kWhole)
+	{
+		return numbers;
+	}
+	else
+	{
+		return mapped(numbers,
+					  [&](double number)
+					  {
+						  const std::optional<int64_t> whole = wholeFrom(number);
+						  return whole ? *whole : (fail(where, numberText(number), what), 0);
+					  });
+	}
 }
 
 template std::vector<double> FbxFile::arrayOf(const FbxNode& node, const std::string& where) const;

@@ -190,25 +190,16 @@ Name partsOf(const std::string& channel)
 	refuseInput(path + ": channels", joinedText(image.channels, ", "), expected);
 }
 
-int indexIn(const Image& image, const std::string& layer, std::string_view last)
-{
-	for (std::size_t i = 0; i < image.channels.size(); ++i)
-	{
-		const Name name = partsOf(image.channels[i]);
-		if (name.layer == layer && name.last == last)
-		{
-			return static_cast<int>(i);
-		}
-	}
-	return -1;
-}
-
 std::optional<NormalChannels> vectorOf(const Image& image, const std::string& layer)
 {
-	for (const std::array<std::string_view, 3>& axes : {std::array<std::string_view, 3>{"x", "y", "z"}, {"r", "g", "b"}})
+	for (const std::string axes : {"XYZ", "RGB"})
 	{
-		const NormalChannels found{layer, indexIn(image, layer, axes[0]), indexIn(image, layer, axes[1]),
-								   indexIn(image, layer, axes[2])};
+		const auto indexOf = [&](std::size_t i) // in either case
+		{
+			const std::string prefix = layer.empty() ? "" : layer + ".";
+			return std::max(image.channel(prefix + axes[i]), image.channel(prefix + lowered(axes.substr(i, 1))));
+		};
+		const NormalChannels found{layer, indexOf(0), indexOf(1), indexOf(2)};
 		if (found.x >= 0 && found.y >= 0 && found.z >= 0)
 		{
 			return found;
@@ -526,7 +517,7 @@ std::string gbufferBytes(const GBuffer& gbuffer, const Notes& notes)
 	{
 		image.matrices.push_back(imageMatrix("worldToCamera64", view.camera_from_world, true));
 	}
-	return exrBytes(image);
+	return exrBytes(std::move(image));
 }
 
 GBuffer readGBuffer(const std::string& path, const GBufferImport& import)

@@ -587,28 +587,22 @@ void checkTarget(const GltfFile& file, std::span<const GltfPlace> places, const 
 std::vector<std::size_t> vertexBytes(const GltfFile& file, std::span<const GltfPlace> places)
 {
 	GltfEditor editor(file, "-");
+	const auto bytesOf = [&editor](const Document& arrays) // of an element of each
+	{
+		return sumOver(arrays,
+					   [&editor](const Document& accessor)
+					   {
+						   const Document& item = editor.items("accessors")[accessor.get<std::size_t>()];
+						   return (componentsOf(textIn(item, "type")) * bytesOfComponent(numberIn(item, "componentType")) + 3) / 4 *
+								  4;
+					   });
+	};
 	return mapped(places,
-				  [&editor](const GltfPlace& place)
+				  [&](const GltfPlace& place)
 				  {
 					  const Document& primitive =
 						  editor.primitiveOf(numberIn(editor.items("nodes")[place.node], "mesh"), place.primitive);
-					  std::vector<Document> arrays{primitive["attributes"]};
-					  for (const Document& target : primitive.value("targets", Document::array()))
-					  {
-						  arrays.push_back(target);
-					  }
-					  std::size_t bytes = 0;
-					  for (const Document& one : arrays)
-					  {
-						  for (const Document& accessor : one)
-						  {
-							  const Document& item = editor.items("accessors")[accessor.get<std::size_t>()];
-							  const std::size_t size =
-								  componentsOf(textIn(item, "type")) * bytesOfComponent(numberIn(item, "componentType"));
-							  bytes += (size + 3) / 4 * 4;
-						  }
-					  }
-					  return bytes;
+					  return bytesOf(primitive["attributes"]) + sumOver(primitive.value("targets", Document::array()), bytesOf);
 				  });
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/base64.h"
 #include "core/content_hash.h"
+#include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/json_text.h"
@@ -37,33 +38,6 @@ void eraseIn(Document& item, const char* holder, const char* field)
 	if (found != item.end() && found->is_object() && found->erase(field) > 0 && found->empty())
 	{
 		item.erase(holder);
-	}
-}
-
-// Repeats in `to` what was changed in `from`, and keeps the order of members.
-void follow(Document& to, const nlohmann::json& from)
-{
-	if (to.is_object() && from.is_object())
-	{
-		for (auto at = to.begin(); at != to.end();)
-		{
-			at = from.contains(at.key()) ? std::next(at) : to.erase(at);
-		}
-		for (const auto& [name, value] : from.items())
-		{
-			follow(to[name], value);
-		}
-	}
-	else if (to.is_array() && from.is_array())
-	{
-		for (std::size_t i = 0; i < from.size(); ++i)
-		{
-			follow(to[i], from[i]);
-		}
-	}
-	else if (to != Document(from))
-	{
-		to = Document(from);
 	}
 }
 
@@ -194,7 +168,7 @@ void GltfEditor::decompress()
 	{
 		made[list] = json.value(list, Document::array());
 	}
-	follow(json, made);
+	json = json.patch(Document(nlohmann::json::diff(nlohmann::json(json), made))); // members keep their order
 	for (Document& view : items("bufferViews"))
 	{
 		eraseIn(view, "extensions", kCompressions[1]);
@@ -405,6 +379,59 @@ Document bakeRecordOf(const std::string& path)
 		record = record.is_object() ? record.value(name, Document()) : Document();
 	}
 	return record.is_object() ? record : Document();
+}
+
+std::string placeValues(std::span<const GltfPlace> places, std::span<const float> front, std::span<const float> back,
+						const std::string& ending)
+{
+	const std::size_t sides = back.empty() ? 1 : 2;
+	const bool is_csv = ending == ".csv";
+	std::string rows = is_csv ? "node,instance,primitive,vertex,visibility" + std::string(sides == 2 ? ",back\n" : "\n") : "";
+	Document parts = Document::array();
+	for (const GltfPlace& place : places)
+	{
+		std::vector<float> values(place.count * sides, 0.0F);
+		std::vector<float> times(place.count, 0.0F);
+		for (const auto& [vertex, of_level] : place.vertices)
+		{
+			values[vertex * sides] += front[of_level];
+			values[vertex * sides + sides - 1] += sides == 2 ? back[of_level] : 0.0F;
+			times[vertex] += 1.0F;
+		}
+		for (std::size_t i = 0; i < values.size(); ++i)
+		{
+			values[i] = times[i / sides] > 0.0F ? values[i] / times[i / sides] : 1.0F;
+		}
+		const std::string instance = place.instance ? std::to_string(*place.instance) : "";
+		const std::string head = std::to_string(place.node) + "," + instance + "," + std::to_string(place.primitive) + ",";
+		for (std::size_t v = 0; is_csv && v < place.count; ++v)
+		{
+			rows += head + std::to_string(v) + "," + shortestDecimal(values[v * sides]) +
+					(sides == 2 ? "," + shortestDecimal(values[v * sides + 1]) : "") + "\n";
+		}
+		if (ending == ".npy")
+		{
+			rows.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+		}
+		parts.push_back({{"node", place.node},
+						 {"instance", place.instance ? Document(*place.instance) : Document()},
+						 {"primitive", place.primitive},
+						 {"values", std::move(values)}});
+	}
+	if (ending == ".json")
+	{
+		return jsonLine(Document{{"schema", "nook/vertices/1"}, {"sides", sides}, {"parts", std::move(parts)}}) + "\n";
+	}
+	if (is_csv)
+	{
+		return rows;
+	}
+	const std::string count = std::to_string(rows.size() / sizeof(float) / sides);
+	std::string head = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + count + (sides == 1 ? ",), }" : ", 2), }");
+	head.resize((head.size() + 11 + 63) / 64 * 64 - 11, ' '); // numpy.lib.format, version 1.0: the values begin at a multiple of 64
+	std::string bytes("\x93NUMPY\x01\x00", 8);
+	appendRaw(bytes, static_cast<uint16_t>(head.size() + 1));
+	return bytes + head + "\n" + rows;
 }
 
 } // namespace nook

@@ -63,8 +63,8 @@ MeshoptView meshoptViewOf(const JsonValue& extension, std::size_t index)
 	constexpr std::array<std::string_view, 4> kFilters{"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
 	MeshoptView view;
 	view.index = index;
-	view.count = extension.wholeNeeded("count", kMostBytes);
-	view.stride = extension.wholeNeeded("byteStride", 256);
+	view.count = extension.at("count").whole(kMostBytes);
+	view.stride = extension.at("byteStride").whole(256);
 	const std::size_t mode = wordIn(extension, "mode", kModes);
 	if (mode == 0)
 	{
@@ -91,11 +91,11 @@ MeshoptView meshoptViewOf(const JsonValue& extension, std::size_t index)
 // The compressed bytes of a view, after checking that its count is plausible.
 std::string_view codedOf(GltfFile& file, const JsonValue& extension, const MeshoptView& view)
 {
-	const std::size_t buffer = extension.indexNeeded("buffer", file.root().count("buffers"));
+	const std::size_t buffer = extension.at("buffer").indexInto(file.root().count("buffers"));
 	const uint64_t offset = extension.whole("byteOffset", kMostBytes).value_or(0);
-	const uint64_t length = extension.wholeNeeded("byteLength", kMostBytes);
+	const uint64_t length = extension.at("byteLength").whole(kMostBytes);
 	const JsonValue holder = file.root().item("buffers", buffer);
-	if (isFallbackBuffer(holder) || offset + length > holder.wholeNeeded("byteLength", kMostBytes))
+	if (isFallbackBuffer(holder) || offset + length > holder.at("byteLength").whole(kMostBytes))
 	{
 		extension.fail("byteLength", "bytes " + std::to_string(offset) + " to " + std::to_string(offset + length),
 					   "bytes that its buffer holds");
@@ -120,7 +120,7 @@ bool expandMeshopt(GltfFile& file)
 	for (std::size_t i = 0; i < items.size(); ++i)
 	{
 		const std::optional<JsonValue> extension = extensionOf(items[i], kMeshopt);
-		const std::size_t buffer = items[i].indexNeeded("buffer", file.root().count("buffers"));
+		const std::size_t buffer = items[i].at("buffer").indexInto(file.root().count("buffers"));
 		if (!extension || !isFallbackBuffer(file.root().item("buffers", buffer)))
 		{
 			continue; // the uncompressed fallback is read
@@ -228,7 +228,7 @@ private:
 			refuseInput(where, "KHR_draco_mesh_compression, which this build does not support (Debian's package libdraco-dev)",
 						"what `gltf-transform copy IN.glb OUT.glb` makes of it", ExitCode::unsupported);
 		}
-		const std::size_t view = extension->indexNeeded("bufferView", m_file.root().count("bufferViews"));
+		const std::size_t view = extension->at("bufferView").indexInto(m_file.root().count("bufferViews"));
 		DracoMesh made;
 		made.where = where;
 		made.view = view;
@@ -254,11 +254,11 @@ private:
 			{
 				continue;
 			}
-			const std::size_t accessor = attributes.indexNeeded(name, m_file.root().count("accessors"));
+			const std::size_t accessor = attributes.at(name).indexInto(m_file.root().count("accessors"));
 			const JsonValue item = m_file.root().item("accessors", accessor);
 			DracoAttribute attribute;
-			attribute.id = static_cast<uint32_t>(ids.wholeNeeded(name, UINT32_MAX));
-			attribute.component = static_cast<uint32_t>(item.wholeNeeded("componentType", UINT16_MAX));
+			attribute.id = static_cast<uint32_t>(ids.at(name).whole(UINT32_MAX));
+			attribute.component = static_cast<uint32_t>(item.at("componentType").whole(UINT16_MAX));
 			attribute.components = static_cast<uint32_t>(componentsOf(item.text("type")));
 			if (attribute.components == 0 || attribute.components > 4 || bytesOfComponent(attribute.component) == 0)
 			{

@@ -20,27 +20,21 @@ constexpr uint32_t kGlbMagic = 0x46546C67;  // "glTF"
 constexpr uint32_t kJsonChunk = 0x4E4F534A; // "JSON"
 constexpr uint32_t kBinChunk = 0x004E4942;  // "BIN\0"
 
-[[noreturn]] void refuseFile(const std::string& path, const std::string& what)
-{
-	throw Error(ExitCode::invalid_input, path + ": " + what);
-}
-
 // Splits a .glb into its chunks and returns the JSON text.
 std::string takeChunks(std::string bytes, GltfFile& file)
 {
+	const std::string header = file.path + ": header";
 	if (bytes.size() < 20 || littleEndian(bytes, 0, 4) != kGlbMagic)
 	{
-		refuseFile(file.path,
-				   "header: found " + std::to_string(bytes.size()) + " bytes that are not a binary glTF, expected \"glTF\" first");
+		refuseInput(header, std::to_string(bytes.size()) + " bytes that are not a binary glTF", "\"glTF\" first");
 	}
 	if (littleEndian(bytes, 4, 4) != 2)
 	{
-		refuseFile(file.path, "header: found version " + std::to_string(littleEndian(bytes, 4, 4)) + ", expected 2");
+		refuseInput(header, "version " + std::to_string(littleEndian(bytes, 4, 4)), "2");
 	}
 	if (littleEndian(bytes, 8, 4) > bytes.size())
 	{
-		refuseFile(file.path, "header: found " + std::to_string(bytes.size()) + " bytes, expected " +
-								  std::to_string(littleEndian(bytes, 8, 4)));
+		refuseInput(header, std::to_string(bytes.size()) + " bytes", std::to_string(littleEndian(bytes, 8, 4)));
 	}
 	const std::size_t end = littleEndian(bytes, 8, 4);
 	std::string json;
@@ -54,12 +48,11 @@ std::string takeChunks(std::string bytes, GltfFile& file)
 		at += 8;
 		if (size > end - at)
 		{
-			refuseFile(file.path, "chunk " + std::to_string(chunk) + ": found " + std::to_string(end - at) + " bytes, expected " +
-									  std::to_string(size));
+			refuseInput(file.path + ": chunk " + std::to_string(chunk), std::to_string(end - at) + " bytes", std::to_string(size));
 		}
 		if (chunk == 0 && kind != kJsonChunk)
 		{
-			refuseFile(file.path, "chunk 0: found another type, expected JSON");
+			refuseInput(file.path + ": chunk 0", "another type", "JSON");
 		}
 		if (chunk == 0)
 		{
@@ -97,8 +90,7 @@ void checkText(const std::string& text, const std::string& path)
 		{
 			if (text.compare(i, 6, "\\u0000") == 0)
 			{
-				refuseFile(path,
-						   "JSON: found a character 0 at byte " + std::to_string(i) + ", expected text"); // names would end there
+				refuseInput(path + ": JSON", "a character 0 at byte " + std::to_string(i), "text"); // names would end there
 			}
 			in_text = c != '"';
 			i += c == '\\' ? 1 : 0;
@@ -109,7 +101,7 @@ void checkText(const std::string& text, const std::string& path)
 	}
 	if (values > kMost)
 	{
-		refuseFile(path, "JSON: found " + std::to_string(values) + " values, expected at most " + std::to_string(kMost));
+		refuseInput(path + ": JSON", std::to_string(values) + " values", "at most " + std::to_string(kMost));
 	}
 }
 
@@ -129,7 +121,7 @@ void parseText(GltfFile& file)
 		reason = at != std::string::npos    ? reason.substr(at)
 				 : tag != std::string::npos ? "(" + reason.substr(tag + 2) + ")"
 											: reason;
-		refuseFile(path, "JSON: found an error " + reason.substr(0, reason.find(';')) + ", expected the text of a glTF file");
+		refuseInput(path + ": JSON", "an error " + reason.substr(0, reason.find(';')), "the text of a glTF file");
 	}
 }
 
@@ -212,7 +204,7 @@ private:
 		m_buffer_bytes = 0;
 		for (const JsonValue& item : items)
 		{
-			const uint64_t length = item.wholeNeeded("byteLength", kMaxBytes);
+			const uint64_t length = item.at("byteLength").whole(kMaxBytes);
 			const bool first = m_buffers.empty();
 			m_buffers.push_back(length);
 			if (m_buffers.size() > items.size() - m_file.decoded.size() || isFallbackBuffer(item))
@@ -266,7 +258,7 @@ private:
 		m_views.clear();
 		for (const JsonValue& item : m_root.objects("bufferViews"))
 		{
-			const std::size_t index = item.indexNeeded("buffer", m_buffers.size());
+			const std::size_t index = item.at("buffer").indexInto(m_buffers.size());
 			const uint64_t buffer = m_buffers[index];
 			const std::optional<JsonValue> extensions = item.object("extensions");
 			if (isFallbackBuffer(m_root.item("buffers", index)) && !(extensions && extensions->has("EXT_meshopt_compression")))
@@ -275,7 +267,7 @@ private:
 			}
 			BufferView view;
 			const uint64_t offset = item.whole("byteOffset", kMaxBytes).value_or(0);
-			view.length = item.wholeNeeded("byteLength", kMaxBytes);
+			view.length = item.at("byteLength").whole(kMaxBytes);
 			view.stride = item.whole("byteStride", 252).value_or(0);
 			if (offset + view.length > buffer)
 			{
@@ -289,7 +281,7 @@ private:
 	// Checks `count` elements of `size` bytes from `offset` in the view that `field` of `item` names.
 	void range(const JsonValue& item, uint64_t offset, uint64_t count, uint64_t size) const
 	{
-		const BufferView& view = m_views[item.indexNeeded("bufferView", m_views.size())];
+		const BufferView& view = m_views[item.at("bufferView").indexInto(m_views.size())];
 		const uint64_t stride = view.stride == 0 ? size : view.stride;
 		const uint64_t end = count == 0 ? offset : offset + stride * (count - 1) + size;
 		if (end > view.length || stride < size)
@@ -305,8 +297,8 @@ private:
 		{
 			Accessor accessor;
 			accessor.type = item.text("type");
-			accessor.component = item.wholeNeeded("componentType", UINT16_MAX);
-			accessor.count = item.wholeNeeded("count", kMaxVertices);
+			accessor.component = item.at("componentType").whole(UINT16_MAX);
+			accessor.count = item.at("count").whole(kMaxVertices);
 			const uint64_t size = componentsOf(accessor.type) * bytesOfComponent(accessor.component);
 			if (size == 0)
 			{
@@ -323,9 +315,9 @@ private:
 			}
 			if (const std::optional<JsonValue> sparse = item.object("sparse"))
 			{
-				const uint64_t count = sparse->wholeNeeded("count", accessor.count);
+				const uint64_t count = sparse->at("count").whole(accessor.count);
 				const JsonValue indices = sparse->objectNeeded("indices");
-				const uint64_t component = indices.wholeNeeded("componentType", UINT16_MAX);
+				const uint64_t component = indices.at("componentType").whole(UINT16_MAX);
 				if (!isIndex(component))
 				{
 					indices.fail("componentType", std::to_string(component), "5121, 5123 or 5125");
@@ -346,7 +338,7 @@ private:
 
 	const Accessor& attribute(const JsonValue& item, std::string_view field, std::string_view types) const
 	{
-		const Accessor& accessor = m_accessors[item.indexNeeded(field, m_accessors.size())];
+		const Accessor& accessor = m_accessors[item.at(field).indexInto(m_accessors.size())];
 		if (types.find(accessor.type) == std::string_view::npos)
 		{
 			item.fail(field, "an accessor of type " + accessor.type, std::string(types));
@@ -420,7 +412,7 @@ private:
 	{
 		const std::vector<JsonValue> items = m_root.objects("nodes");
 		std::vector<std::vector<std::size_t>> children;
-		std::vector<std::size_t>& parent = m_parents;
+		std::vector<std::size_t>& parent = m_file.parents;
 		parent.assign(items.size(), items.size());
 		for (std::size_t i = 0; i < items.size(); ++i)
 		{
@@ -482,14 +474,15 @@ private:
 			std::vector<std::size_t> roots = scene.indices("nodes", count);
 			for (const std::size_t root : roots)
 			{
-				std::size_t above = m_parents[root];
+				std::size_t above = m_file.parents[root];
 				while (above != count && std::find(roots.begin(), roots.end(), above) == roots.end())
 				{
-					above = m_parents[above];
+					above = m_file.parents[above];
 				}
-				if (m_parents[root] != count && above == count) // otherwise reached from its parent
+				if (m_file.parents[root] != count && above == count) // otherwise reached from its parent
 				{
-					scene.fail("nodes", "node " + std::to_string(root) + ", a child of node " + std::to_string(m_parents[root]),
+					scene.fail("nodes",
+							   "node " + std::to_string(root) + ", a child of node " + std::to_string(m_file.parents[root]),
 							   "nodes that have no parent, or one in the scene");
 				}
 			}
@@ -510,7 +503,6 @@ private:
 	std::vector<uint64_t> m_buffers; // lengths
 	std::vector<BufferView> m_views;
 	std::vector<Accessor> m_accessors;
-	std::vector<std::size_t> m_parents; // of nodes; the node count if there is none
 	uint64_t m_empty_bytes = 0;
 	uint64_t m_buffer_bytes = 0;
 	uint64_t m_used = 0; // vertices and indices of all primitives
@@ -537,7 +529,7 @@ GltfFile openGltf(const std::string& path)
 	}
 	if (text.starts_with("glTF"))
 	{
-		refuseFile(path, "header: found a binary glTF, expected the ending .glb of one, or text");
+		refuseInput(path + ": header", "a binary glTF", "the ending .glb of one, or text");
 	}
 	GltfFile file;
 	file.path = path;
@@ -605,9 +597,9 @@ std::optional<JsonValue> extensionOf(const JsonValue& item, std::string_view nam
 std::string_view viewBytes(GltfFile& file, std::size_t view)
 {
 	const JsonValue item = file.root().item("bufferViews", view);
-	const auto index = static_cast<std::size_t>(item.wholeNeeded("buffer", UINT32_MAX));
+	const auto index = static_cast<std::size_t>(item.at("buffer").whole(UINT32_MAX));
 	const auto offset = static_cast<std::size_t>(item.whole("byteOffset", UINT32_MAX).value_or(0));
-	const auto length = static_cast<std::size_t>(item.wholeNeeded("byteLength", UINT32_MAX));
+	const auto length = static_cast<std::size_t>(item.at("byteLength").whole(UINT32_MAX));
 	return bufferBytes(file, index, offset, length);
 }
 

@@ -5,6 +5,7 @@
 #include "core/json_reader.h"
 #include "scene/load.h"
 #include "scene/load_parts.h"
+#include "scene/mesh_codec.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
@@ -36,6 +37,7 @@ struct GltfFile
 	std::vector<std::optional<std::string>> buffers; // contents of buffers other than the chunk, loaded on demand
 	std::vector<std::string> decoded;                // contents of the last buffers, made by expandGltf()
 	std::vector<std::string> files;                  // buffer files, besides `path`
+	std::vector<std::size_t> parents;                // of the nodes, once they are checked; their number for those without one
 
 	JsonValue root() const
 	{
@@ -156,9 +158,10 @@ public:
 
 private:
 	const std::vector<glm::dmat4>& jointsOf(std::size_t skin);
+	const glm::dmat4& worldOf(std::size_t node);
 
 	GltfFile& m_file;
-	std::vector<glm::dmat4> m_worlds;                        // for all nodes; empty until a skin needs them
+	std::vector<std::optional<glm::dmat4>> m_worlds;         // of the nodes that a skin needs
 	std::map<std::size_t, std::vector<glm::dmat4>> m_joints; // for the used skins
 };
 
@@ -186,7 +189,6 @@ struct PlacedNode
 	glm::dmat4 world{1.0};
 	std::optional<std::size_t> instance; // instance number
 	bool has_mesh = true;                // false: the node is hidden, or only its instances have the mesh
-	std::optional<std::size_t> parent{}; // a node
 };
 
 // The members of an item's "extras": "key=value".

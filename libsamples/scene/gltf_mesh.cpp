@@ -132,7 +132,7 @@ private:
 
 	JsonValue accessorOf(const JsonValue& item, std::string_view field) const
 	{
-		return m_root.item("accessors", item.indexNeeded(field, m_root.count("accessors")));
+		return m_root.item("accessors", item.at(field).indexInto(m_root.count("accessors")));
 	}
 
 	void poseValues(const JsonValue& item, const JsonValue& attributes, Primitive& primitive)
@@ -148,7 +148,7 @@ private:
 		{
 			const std::string joints = "JOINTS_" + std::to_string(i);
 			const std::string weights = "WEIGHTS_" + std::to_string(i);
-			const uint64_t component = accessorOf(attributes, joints).wholeNeeded("componentType", UINT16_MAX);
+			const uint64_t component = accessorOf(attributes, joints).at("componentType").whole(UINT16_MAX);
 			if (component != 5121 && component != 5123)
 			{
 				attributes.fail(joints, "an accessor of component type " + std::to_string(component), "5121 or 5123");
@@ -353,7 +353,8 @@ private:
 	void addParts(const PlacedNode& node)
 	{
 		const JsonValue item = m_root.item("nodes", node.index);
-		m_parts[node.index] = addPart(item, node.parent ? m_parts[*node.parent] : -1);
+		const std::size_t parent = m_file.parents[node.index];
+		m_parts[node.index] = addPart(item, parent < m_parts.size() ? m_parts[parent] : -1);
 		m_mesh_part = m_parts[node.index];
 		if (const std::optional<std::size_t> index = item.index("mesh", m_meshes.size()))
 		{
@@ -387,13 +388,17 @@ private:
 			m_tallies["points-or-lines"].add("mesh '" + made.name + "'", primitive.elementCount());
 			if (m_file.second_set == kPlacesSet && primitive.triangleCount() > 0)
 			{
-				GltfPlace& at = m_source.places.emplace_back();
-				at.node = node.index;
-				at.instance = node.instance;
-				at.primitive = static_cast<std::size_t>(&primitive - m_meshes[*mesh].data());
-				at.count = primitive.positions->count();
-				at.mesh = *mesh;
-				at.triangle = made.first_triangle;
+				const auto index = static_cast<std::size_t>(&primitive - m_meshes[*mesh].data());
+				m_source.places.push_back({node.index,
+										   node.instance,
+										   index,
+										   primitive.positions->count(),
+										   made.first_triangle,
+										   {},
+										   *mesh,
+										   false,
+										   {},
+										   {}});
 			}
 			triangles(primitive, m_world_from_file * node.world, pose);
 			made.triangle_count = m_level.triangles.size() - made.first_triangle;

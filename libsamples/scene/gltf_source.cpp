@@ -108,19 +108,15 @@ public:
 		std::vector<PlacedNode> placed;
 		std::vector<PlacedNode> open;
 		std::size_t left = kMaxInstances;
-		const auto push = [&](const std::vector<std::size_t>& indices, const PlacedNode* parent, bool hidden)
+		const auto push = [&](const std::vector<std::size_t>& indices, const glm::dmat4& world, bool hidden)
 		{
 			for (auto at = indices.rbegin(); at != indices.rend(); ++at)
 			{
-				open.push_back({*at, parent != nullptr ? parent->world : glm::dmat4(1.0), {}, !hidden, {}});
-				if (parent != nullptr)
-				{
-					open.back().parent = parent->index;
-				}
+				open.push_back({*at, world, {}, !hidden});
 			}
 		};
 		Tally hidden_nodes;
-		push(rootsOf(m_root.objects("scenes")[scene], nodes), nullptr, false);
+		push(rootsOf(m_root.item("scenes", scene), m_file.parents), glm::dmat4(1.0), false);
 		while (!open.empty())
 		{
 			PlacedNode node = open.back();
@@ -128,7 +124,7 @@ public:
 			node.world = node.world * localOf(nodes[node.index]);
 			const std::optional<JsonValue> visibility = extensionOf(nodes[node.index], "KHR_node_visibility");
 			const bool hidden = !node.has_mesh || (visibility && !visibility->boolean("visible", true));
-			push(nodes[node.index].indices("children", nodes.size()), &node, hidden);
+			push(nodes[node.index].indices("children", nodes.size()), node.world, hidden);
 			node.has_mesh = !hidden;
 			placed.push_back(node);
 			if (hidden)
@@ -140,7 +136,7 @@ public:
 			placed.back().has_mesh = !places;
 			for (std::size_t i = 0; places && i < places->size(); ++i)
 			{
-				placed.push_back({node.index, node.world * (*places)[i], i, true, node.parent});
+				placed.push_back({node.index, node.world * (*places)[i], i, true});
 			}
 			left -= places ? places->size() : 0;
 		}
@@ -163,31 +159,30 @@ public:
 
 private:
 	// The nodes that a scene lists, except descendants of other listed ones: against the specification, exporters list all nodes.
-	static std::vector<std::size_t> rootsOf(const JsonValue& scene, const std::vector<JsonValue>& nodes)
+	static std::vector<std::size_t> rootsOf(const JsonValue& scene, const std::vector<std::size_t>& parents)
 	{
-		std::vector<std::size_t> roots = scene.indices("nodes", nodes.size());
-		std::vector<std::size_t> open = roots;
-		std::vector<bool> below(nodes.size(), false);
-		while (!open.empty())
+		std::vector<std::size_t> roots = scene.indices("nodes", parents.size());
+		std::vector<bool> is_listed(parents.size(), false);
+		for (const std::size_t root : roots)
 		{
-			const std::size_t node = open.back();
-			open.pop_back();
-			for (const std::size_t child : nodes[node].indices("children", nodes.size()))
-			{
-				if (!below[child])
-				{
-					below[child] = true;
-					open.push_back(child);
-				}
-			}
+			is_listed[root] = true;
 		}
-		std::erase_if(roots, [&](std::size_t root) { return below[root]; });
+		std::erase_if(roots,
+					  [&](std::size_t root)
+					  {
+						  std::size_t above = parents[root];
+						  while (above < parents.size() && !is_listed[above])
+						  {
+							  above = parents[above];
+						  }
+						  return above < parents.size();
+					  });
 		return roots;
 	}
 
 	void colour(const JsonValue& info, SourceMaterial& made)
 	{
-		const std::size_t index = info.indexNeeded("index", m_textures.size());
+		const std::size_t index = info.at("index").indexInto(m_textures.size());
 		const std::optional<std::size_t> image = imageOf(m_textures[index]);
 		if (made.material.alpha_mode == AlphaMode::opaque)
 		{
@@ -252,7 +247,7 @@ private:
 		{
 			mask.bytes = item.has("uri")
 							 ? dataOf(uri, item).value_or("")
-							 : std::string(viewBytes(m_file, item.indexNeeded("bufferView", m_root.count("bufferViews"))));
+							 : std::string(viewBytes(m_file, item.at("bufferView").indexInto(m_root.count("bufferViews"))));
 		}
 		m_source.masks.push_back(std::move(mask));
 		return next;
@@ -270,16 +265,16 @@ private:
 		}
 		const JsonValue lens = camera.objectNeeded(type);
 		made.lens.orthographic = type == "orthographic";
-		made.lens.near_m = lens.numberNeeded("znear");
+		made.lens.near_m = lens.at("znear").number();
 		made.lens.far_m = lens.number("zfar", std::numeric_limits<double>::infinity());
 		if (made.lens.orthographic)
 		{
-			made.lens.half_height_m = lens.numberNeeded("ymag");
-			lens.numberNeeded("zfar");
+			made.lens.half_height_m = lens.at("ymag").number();
+			lens.at("zfar").number();
 		}
 		else
 		{
-			made.lens.fov_y_rad = lens.numberNeeded("yfov");
+			made.lens.fov_y_rad = lens.at("yfov").number();
 		}
 		const bool sees = made.lens.orthographic ? made.lens.half_height_m != 0.0
 												 : made.lens.near_m > 0.0 && made.lens.fov_y_rad > 0.0 && made.lens.fov_y_rad < kPi;

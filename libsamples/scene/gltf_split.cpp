@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -20,13 +21,12 @@ using Document = GltfEditor::Document;
 // The integer that stands for 1 in normalised components.
 double oneOf(uint64_t component)
 {
-	constexpr std::array<double, 4> kOnes{127.0, 255.0, 32767.0, 65535.0}; // of 5120 and so on
-	return component == 5126 ? 1.0 : kOnes[component - 5120];
-}
-
-template <class Whole> void appendWhole(std::string& bytes, double value)
-{
-	appendRaw(bytes, static_cast<Whole>(std::floor(value + 0.5)));
+	return withComponent(component,
+						 [](auto zero)
+						 {
+							 using Number = decltype(zero);
+							 return std::is_integral_v<Number> ? static_cast<double>(std::numeric_limits<Number>::max()) : 1.0;
+						 });
 }
 
 // The numbers of an accessor's elements, and of further ones.
@@ -394,15 +394,12 @@ private:
 void appendComponent(std::string& bytes, uint64_t component, double value, bool normalized)
 {
 	value *= normalized ? oneOf(component) : 1.0;
-	switch (component)
-	{
-	case 5120: appendWhole<int8_t>(bytes, value); break;
-	case 5121: appendWhole<uint8_t>(bytes, value); break;
-	case 5122: appendWhole<int16_t>(bytes, value); break;
-	case 5123: appendWhole<uint16_t>(bytes, value); break;
-	case 5125: appendWhole<uint32_t>(bytes, value); break;
-	default: appendRaw(bytes, static_cast<float>(value));
-	}
+	withComponent(component,
+				  [&](auto zero)
+				  {
+					  using Number = decltype(zero);
+					  appendRaw(bytes, static_cast<Number>(std::is_integral_v<Number> ? std::floor(value + 0.5) : value));
+				  });
 }
 
 void addVertices(GltfEditor& editor, Document& primitive, const VertexPairs& added, bool alone)

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <numeric>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -23,51 +23,9 @@ template <class T> T valueAt(const char* at)
 	return value;
 }
 
-// glTF 2.0, section 3.6.2.2: signed numbers range from −1 to 1; the least integer also maps to −1.
-template <class T> double wholeAt(const char* at, bool normalized, double most)
-{
-	const auto value = static_cast<double>(valueAt<T>(at));
-	return normalized ? std::max(value / most, -1.0) : value;
-}
-
 uint32_t indexAt(const char* at, uint64_t component)
 {
-	switch (component)
-	{
-	case 5121: return valueAt<uint8_t>(at);
-	case 5123: return valueAt<uint16_t>(at);
-	default: return valueAt<uint32_t>(at);
-	}
-}
-
-// Transforms of all nodes, whether in a scene or not.
-std::vector<glm::dmat4> worldsOf(const std::vector<JsonValue>& nodes)
-{
-	std::vector<std::vector<std::size_t>> children;
-	std::vector<bool> is_root(nodes.size(), true);
-	for (const JsonValue& node : nodes)
-	{
-		for (const std::size_t child : children.emplace_back(node.indices("children", nodes.size())))
-		{
-			is_root[child] = false;
-		}
-	}
-	std::vector<glm::dmat4> worlds(nodes.size(), glm::dmat4(1.0)); // of a node's parent until the node is processed
-	std::vector<std::size_t> open(nodes.size());
-	std::iota(open.begin(), open.end(), std::size_t{0});
-	std::erase_if(open, [&](std::size_t node) { return !is_root[node]; });
-	while (!open.empty())
-	{
-		const std::size_t node = open.back();
-		open.pop_back();
-		worlds[node] = worlds[node] * localOf(nodes[node]);
-		for (const std::size_t child : children[node])
-		{
-			worlds[child] = worlds[node];
-			open.push_back(child);
-		}
-	}
-	return worlds;
+	return withComponent(component, [at](auto zero) { return static_cast<uint32_t>(valueAt<decltype(zero)>(at)); });
 }
 
 // This work is based on: Khronos Group, "EXT_mesh_gpu_instancing", glTF extensions.
@@ -83,7 +41,7 @@ std::optional<GltfValues> attributeOf(GltfFile& file, const JsonValue& attribute
 		return std::nullopt;
 	}
 	const JsonValue accessor = root.item("accessors", *index);
-	const uint64_t component = accessor.wholeNeeded("componentType", UINT16_MAX);
+	const uint64_t component = accessor.at("componentType").whole(UINT16_MAX);
 	const bool whole = (component == 5120 || component == 5122) && accessor.boolean("normalized", false);
 	if (accessor.text("type") != type || !(component == 5126 || (wide && whole)))
 	{
@@ -102,16 +60,8 @@ std::optional<GltfValues> attributeOf(GltfFile& file, const JsonValue& attribute
 
 std::size_t bytesOfComponent(uint64_t component)
 {
-	switch (component)
-	{
-	case 5120:
-	case 5121: return 1;
-	case 5122:
-	case 5123: return 2;
-	case 5125:
-	case 5126: return 4;
-	default: return 0;
-	}
+	const bool is_known = component >= 5120 && component <= 5126 && component != 5124;
+	return is_known ? withComponent(component, [](auto zero) { return sizeof zero; }) : 0;
 }
 
 std::size_t componentsOf(std::string_view type)
@@ -125,30 +75,29 @@ std::size_t componentsOf(std::string_view type)
 GltfValues::GltfValues(GltfFile& file, std::size_t accessor)
 {
 	const JsonValue item = file.root().item("accessors", accessor);
-	m_count = static_cast<std::size_t>(item.wholeNeeded("count", UINT32_MAX));
-	m_component = item.wholeNeeded("componentType", UINT16_MAX);
+	m_count = static_cast<std::size_t>(item.at("count").whole(UINT32_MAX));
+	m_component = item.at("componentType").whole(UINT16_MAX);
 	m_normalized = item.boolean("normalized", false);
 	m_size = componentsOf(item.text("type")) * bytesOfComponent(m_component);
 	// Bytes of the view that `of` names, starting at its offset.
 	const auto bytes = [&](const JsonValue& of)
 	{
-		const auto view = static_cast<std::size_t>(of.wholeNeeded("bufferView", UINT32_MAX));
+		const auto view = static_cast<std::size_t>(of.at("bufferView").whole(UINT32_MAX));
 		return viewBytes(file, view).substr(static_cast<std::size_t>(of.whole("byteOffset", UINT64_MAX).value_or(0)));
 	};
 	m_stride = m_size;
 	if (item.has("bufferView"))
 	{
-		const JsonValue view =
-			file.root().item("bufferViews", static_cast<std::size_t>(item.wholeNeeded("bufferView", UINT32_MAX)));
+		const JsonValue view = file.root().item("bufferViews", static_cast<std::size_t>(item.at("bufferView").whole(UINT32_MAX)));
 		m_stride = static_cast<std::size_t>(view.whole("byteStride", UINT16_MAX).value_or(0));
 		m_stride = m_stride == 0 ? m_size : m_stride;
 		m_bytes = bytes(item);
 	}
 	if (const std::optional<JsonValue> sparse = item.object("sparse"))
 	{
-		const auto count = static_cast<std::size_t>(sparse->wholeNeeded("count", m_count));
+		const auto count = static_cast<std::size_t>(sparse->at("count").whole(m_count));
 		const JsonValue indices = sparse->objectNeeded("indices");
-		const uint64_t component = indices.wholeNeeded("componentType", UINT16_MAX);
+		const uint64_t component = indices.at("componentType").whole(UINT16_MAX);
 		const std::string_view from = bytes(indices);
 		for (std::size_t i = 0; i < count; ++i)
 		{
@@ -185,15 +134,16 @@ double GltfValues::number(std::size_t i, std::size_t component) const
 		return 0.0;
 	}
 	at += component * bytesOfComponent(m_component);
-	switch (m_component)
-	{
-	case 5120: return wholeAt<int8_t>(at, m_normalized, 127.0);
-	case 5121: return wholeAt<uint8_t>(at, m_normalized, 255.0);
-	case 5122: return wholeAt<int16_t>(at, m_normalized, 32767.0);
-	case 5123: return wholeAt<uint16_t>(at, m_normalized, 65535.0);
-	case 5125: return wholeAt<uint32_t>(at, m_normalized, 4294967295.0);
-	default: return static_cast<double>(valueAt<float>(at));
-	}
+	return withComponent(m_component,
+						 [&](auto zero)
+						 {
+							 using Number = decltype(zero);
+							 const auto value = static_cast<double>(valueAt<Number>(at));
+							 // glTF 2.0, section 3.6.2.2: signed numbers range from −1 to 1; the least integer also maps to −1.
+							 return std::is_integral_v<Number> && m_normalized
+										? std::max(value / static_cast<double>(std::numeric_limits<Number>::max()), -1.0)
+										: value;
+						 });
 }
 
 glm::dvec2 GltfValues::vec2(std::size_t i) const
@@ -218,6 +168,19 @@ uint32_t GltfValues::index(std::size_t i) const
 	return at == nullptr ? 0 : indexAt(at, m_component);
 }
 
+// Also of nodes in no scene.
+const glm::dmat4& GltfPoses::worldOf(std::size_t node)
+{
+	m_worlds.resize(m_file.parents.size());
+	if (!m_worlds[node])
+	{
+		const std::size_t parent = m_file.parents[node];
+		const glm::dmat4 above = parent == m_worlds.size() ? glm::dmat4(1.0) : worldOf(parent);
+		m_worlds[node] = above * localOf(m_file.root().item("nodes", node));
+	}
+	return *m_worlds[node];
+}
+
 const std::vector<glm::dmat4>& GltfPoses::jointsOf(std::size_t skin)
 {
 	const auto [found, is_new] = m_joints.try_emplace(skin);
@@ -226,13 +189,8 @@ const std::vector<glm::dmat4>& GltfPoses::jointsOf(std::size_t skin)
 		return found->second;
 	}
 	const JsonValue root = m_file.root();
-	const std::vector<JsonValue> nodes = root.objects("nodes");
-	if (m_worlds.empty())
-	{
-		m_worlds = worldsOf(nodes);
-	}
 	const JsonValue item = root.item("skins", skin);
-	const std::vector<std::size_t> joints = item.indices("joints", nodes.size());
+	const std::vector<std::size_t> joints = item.indices("joints", m_file.parents.size());
 	if (joints.empty())
 	{
 		item.fail("joints", "none", "nodes that move the skin");
@@ -242,7 +200,7 @@ const std::vector<glm::dmat4>& GltfPoses::jointsOf(std::size_t skin)
 	{
 		const JsonValue matrices = root.item("accessors", *accessor);
 		inverse.emplace(m_file, *accessor);
-		if (matrices.text("type") != "MAT4" || matrices.wholeNeeded("componentType", UINT16_MAX) != 5126 ||
+		if (matrices.text("type") != "MAT4" || matrices.at("componentType").whole(UINT16_MAX) != 5126 ||
 			inverse->count() < joints.size())
 		{
 			item.fail("inverseBindMatrices", std::to_string(inverse->count()) + " values of type " + matrices.text("type"),
@@ -256,7 +214,7 @@ const std::vector<glm::dmat4>& GltfPoses::jointsOf(std::size_t skin)
 		{
 			bind[static_cast<int>(k / 4)][static_cast<int>(k % 4)] = inverse->number(i, k);
 		}
-		found->second.push_back(m_worlds[joints[i]] * bind);
+		found->second.push_back(worldOf(joints[i]) * bind);
 	}
 	return found->second;
 }
@@ -351,13 +309,13 @@ std::optional<std::vector<glm::dmat4>> instancesOf(GltfFile& file, const JsonVal
 	for (const auto& [name, number] : attributes.value->items())
 	{
 		// A custom attribute moves nothing, but determines the number of instances if it is the only one.
-		const std::size_t index = attributes.indexNeeded(name, file.root().count("accessors"));
+		const std::size_t index = attributes.at(name).indexInto(file.root().count("accessors"));
 		const JsonValue accessor = file.root().item("accessors", index);
 		if (!count && !accessor.has("bufferView"))
 		{
 			attributes.fail(name, "an accessor that no buffer holds", "one of a bufferView");
 		}
-		count = count ? *count : static_cast<std::size_t>(accessor.wholeNeeded("count", UINT32_MAX));
+		count = count ? *count : static_cast<std::size_t>(accessor.at("count").whole(UINT32_MAX));
 	}
 	if (!count)
 	{

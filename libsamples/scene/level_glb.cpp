@@ -299,16 +299,18 @@ private:
 		}
 		if (m_places != nullptr)
 		{
-			GltfPlace& place = m_places->emplace_back();
-			place.node = m_nodes.size();
-			place.primitive = number;
-			place.count = vertices.size();
-			place.triangle = first_triangle;
-			place.triangles = std::move(triangles);
-			place.corners = std::move(corners);
-			place.mesh = m_meshes.size();
-			place.vertices =
+			const auto numbered =
 				listOf(vertices.size(), [&](std::size_t v) { return std::pair(static_cast<uint32_t>(v), vertices[v]); });
+			m_places->push_back({m_nodes.size(),
+								 {},
+								 number,
+								 vertices.size(),
+								 first_triangle,
+								 std::move(triangles),
+								 m_meshes.size(),
+								 false,
+								 numbered,
+								 std::move(corners)});
 		}
 		return {{"attributes", attributes},
 				{"indices", accessor(kIndices, "SCALAR", first_index * sizeof(uint32_t), indices)},
@@ -499,7 +501,7 @@ std::string pngWithChannel(const Image& image, std::size_t channel, const Mask& 
 			rgba.push_back(static_cast<uint8_t>(255.0 * std::clamp(k == channel ? value : given, 0.0, 1.0) + 0.5));
 		}
 	}
-	return rgbaPngBytes(image.width_px, image.height_px, rgba);
+	return pngBytes(image.width_px, image.height_px, std::span<const uint8_t>(rgba), {});
 }
 
 glm::dvec3 glbOrigin(const Bounds& bounds)
@@ -508,17 +510,14 @@ glm::dvec3 glbOrigin(const Bounds& bounds)
 	return std::max({reach.x, reach.y, reach.z}) < kLarge_m ? glm::dvec3(0.0) : glm::floor(0.5 * (bounds.least + bounds.most));
 }
 
-std::string levelGlb(const Level& level, std::string_view generator)
+std::string levelGlb(const Level& level, std::string_view generator, std::vector<GltfPlace>* places)
 {
 	assert(!level.triangles.empty());
-	return Writer(level, nullptr).bytes(generator);
-}
-
-std::string levelGlb(const Level& level, std::string_view generator, std::vector<GltfPlace>& places)
-{
-	assert(!level.triangles.empty());
-	checkPictures(level);
-	return Writer(level, &places).bytes(generator);
+	if (places != nullptr)
+	{
+		checkPictures(level);
+	}
+	return Writer(level, places).bytes(generator);
 }
 
 void checkPictures(const Level& level)

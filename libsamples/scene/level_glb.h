@@ -26,11 +26,10 @@ namespace nook
 //
 // loadLevel() reads the same triangles in the same order, except that meshes with several materials are grouped by material.
 // Requires a triangle. Throws Error (unsupported) if the file would exceed readFile's limit. `generator`: "nook 0.1.0".
-std::string levelGlb(const Level& level, std::string_view generator);
-
-// Likewise without surroundings, and with base colour textures, by names relative to the current folder; a mask's PNG then has
-// these colours. Appends where the level's vertices are in the file.
-std::string levelGlb(const Level& level, std::string_view generator, std::vector<GltfPlace>& places);
+//
+// `places` gets where the level's vertices are in the file, which then has no surroundings, but base colour textures, by names
+// relative to the current folder; a mask's PNG has these colours.
+std::string levelGlb(const Level& level, std::string_view generator, std::vector<GltfPlace>* places = nullptr);
 
 // Throws Error (invalid_input) if that would read a picture which is not to be read.
 void checkPictures(const Level& level);

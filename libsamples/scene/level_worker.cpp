@@ -2,14 +2,16 @@
 // The worker that reads levels of formats with polygons (core/isolate.h), and decodes compressed glTF. It sends what it finds
 // piece by piece.
 #include "core/isolate.h"
-#include "scene/cut_faces.h"
 #include "scene/fbx.h"
 #include "scene/load.h"
 #include "scene/load_parts.h"
 #include "scene/mesh_codec.h"
 #include "scene/mesh_text.h"
 
+#include <meshoptimizer.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace nook
@@ -18,23 +20,14 @@ namespace
 {
 
 // OBJ has no alpha mode: an opacity texture makes a mask, an opacity below 1 without one makes a blended material.
-void sendMaterial(const MtlMaterial& material, TrMeaning tr, SentTallies& tallies, ValueWriter& to)
+void sendMaterial(MtlMaterial& material, TrMeaning tr, SentTallies& tallies, ValueWriter& to)
 {
 	bool inverted = false;
-	to.text(material.name);
-	to.value(opacityOf(material, tr, inverted));
-	to.value(material.two_sided ? 1 : 0);
-	to.value(material.kd);
-	for (const MtlPicture* const picture : {&material.opacity, &material.colour})
-	{
-		to.text(picture->name);
-		to.value(static_cast<const MaskUse&>(*picture));
-		to.value(picture->uv_of_set);
-		to.values(picture->bytes);
-	}
+	material.alpha = opacityOf(material, tr, inverted);
+	send<FileMaterial>(material, to);
 	const std::string place = "material '" + material.name + "'";
 	tallies["inverted-transparency"].add(place, inverted ? 1 : 0);
-	tallies["not-applied"].add(place + ", map_d " + material.opacity.ignored, material.opacity.ignored.empty() ? 0 : 1);
+	tallies["not-applied"].add(place + ", map_d " + material.ignored, material.ignored.empty() ? 0 : 1);
 }
 
 void checkSize(const std::vector<FileMesh>& meshes, const std::string& path)
@@ -77,7 +70,7 @@ void sendFile(MeshFile file, const std::string& path, const LoadSettings& settin
 {
 	SentTallies tallies;
 	to.value(static_cast<uint32_t>(file.materials.list.size()));
-	for (const MtlMaterial& material : file.materials.list)
+	for (MtlMaterial& material : file.materials.list)
 	{
 		sendMaterial(material, settings.tr, tallies, to);
 	}
@@ -97,14 +90,8 @@ void sendFile(MeshFile file, const std::string& path, const LoadSettings& settin
 	tallies["points-or-lines"] = faces.lines;
 	tallies["bad-polygons"] = faces.bad_polygons;
 	sendTallies(tallies, to);
-	for (const std::vector<std::string>& list : {file.files, file.missing})
-	{
-		to.value(uint64_t{list.size()});
-		for (const std::string& name : list)
-		{
-			to.text(name);
-		}
-	}
+	send(file.files, to);
+	send(file.missing, to);
 }
 
 void readLevelFile(ValueReader& request, ValueWriter& answer)
@@ -125,9 +112,55 @@ void readLevelFile(ValueReader& request, ValueWriter& answer)
 	sendFile(std::move(file), path, settings, answer);
 }
 
-} // namespace
+using ViewDecoder = int (*)(void* bytes, std::size_t count, std::size_t stride, const unsigned char* coded, std::size_t size);
+constexpr std::array<ViewDecoder, 3> kDecoders{meshopt_decodeVertexBuffer, meshopt_decodeIndexBuffer,
+											   meshopt_decodeIndexSequence}; // of MeshoptView::Mode
+using ViewFilter = void (*)(void* bytes, std::size_t count, std::size_t stride);
+constexpr std::array<ViewFilter, 4> kFilters{nullptr, meshopt_decodeFilterOct, meshopt_decodeFilterQuat,
+											 meshopt_decodeFilterExp}; // of MeshoptView::Filter
 
+bool decodeView(const MeshoptView& view, const std::vector<unsigned char>& coded, std::vector<char>& bytes)
+{
+	const auto count = static_cast<std::size_t>(view.count);
+	const auto stride = static_cast<std::size_t>(view.stride);
+	bytes.resize(count * stride);
+	const ViewFilter filter = kFilters[static_cast<std::size_t>(view.filter)];
+	const bool is_decoded =
+		kDecoders[static_cast<std::size_t>(view.mode)](bytes.data(), count, stride, coded.data(), coded.size()) == 0;
+	if (is_decoded && filter != nullptr)
+	{
+		filter(bytes.data(), count, stride);
+	}
+	return is_decoded;
+}
+
+void decodeMeshopt(ValueReader& request, ValueWriter& answer)
+{
+	const std::string name = request.text();
+	std::vector<MeshoptView> views(request.value<uint64_t>());
+	std::vector<std::vector<unsigned char>> coded(views.size());
+	for (std::size_t i = 0; i < views.size(); ++i)
+	{
+		views[i] = request.value<MeshoptView>();
+		request.values(coded[i], kMaxFileBytes);
+	}
+	std::vector<char> bytes;
+	for (std::size_t i = 0; i < views.size(); ++i)
+	{
+		if (!decodeView(views[i], coded[i], bytes))
+		{
+			refuseInput(name + ": bufferViews[" + std::to_string(views[i].index) + "].extensions.EXT_meshopt_compression",
+						"bytes that do not decode",
+						std::to_string(views[i].count) + " elements of " + std::to_string(views[i].stride) + " bytes");
+		}
+		answer.values(bytes);
+		std::vector<unsigned char>().swap(coded[i]);
+	}
+}
+
+} // namespace
 } // namespace nook
+
 int main(int argc, char** argv)
 {
 	using namespace nook;

@@ -405,18 +405,10 @@ std::string keyOf(std::span<const PlacedLevel> levels, const LoadSettings& setti
 	for (const PlacedLevel& placed : levels)
 	{
 		key.add(placed.name);
-		for (int axis = 0; axis < 3; ++axis)
-		{
-			key.add(placed.move[axis]);
-		}
+		key.add(placed.move.x, placed.move.y, placed.move.z);
 	}
-	for (const double value :
-		 {settings.unit_m, static_cast<double>(settings.up), settings.strict ? 1.0 : 0.0, static_cast<double>(settings.max_texels),
-		  settings.allow_outside ? 1.0 : 0.0, settings.undo_bake ? 1.0 : 0.0, static_cast<double>(settings.pose),
-		  static_cast<double>(settings.tr)})
-	{
-		key.add(value);
-	}
+	key.add(settings.unit_m, static_cast<int>(settings.up), settings.strict, settings.max_texels, settings.allow_outside,
+			settings.undo_bake, static_cast<int>(settings.pose), static_cast<int>(settings.tr));
 	for (const std::string& pattern : settings.ignore)
 	{
 		key.add(pattern);
@@ -570,7 +562,7 @@ void addPages(const std::string& path, const Level& level, const RunSettings& ru
 		{
 			continue;
 		}
-		const std::string bytes(viewBytes(file, static_cast<std::size_t>(item.wholeNeeded("bufferView", UINT32_MAX))));
+		const std::string bytes(viewBytes(file, static_cast<std::size_t>(item.at("bufferView").whole(UINT32_MAX))));
 		std::vector<AlphaImage> read = decodeAlphas({{"visibility.png", "", bytes, MaskChannel::red}}, path);
 		baked.pages.resize(std::max(baked.pages.size(), image + 1));
 		baked.pages[image] = {"", read[0].width_px, read[0].height_px, Wrap::clamp, Wrap::clamp, std::move(read[0].alpha)};
@@ -617,7 +609,7 @@ BakedValues loadBakedValues(const std::string& path, const Level& level, const R
 	refuseInput(path, "no attribute _VISIBILITY", "a file of nook bake");
 }
 
-void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std::vector<uint32_t>* before)
+std::vector<uint32_t> compactLevel(Level& level, std::span<const uint8_t> keep, int threads)
 {
 	assert(keep.size() == level.triangles.size());
 	if (std::find(keep.begin(), keep.end(), 0) != keep.end() ||
@@ -625,11 +617,7 @@ void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std:
 	{
 		dropTriangles(level, keep);
 	}
-	std::vector<uint32_t> vertices = dropVertices(level, threads);
-	if (before != nullptr)
-	{
-		*before = std::move(vertices);
-	}
+	return dropVertices(level, threads);
 }
 
 void visit(Archive& archive, Material& material)

@@ -28,8 +28,6 @@ constexpr std::size_t kMemoryPerByte = 64;
 constexpr int kTimeFloor_s = 5;
 constexpr std::size_t kBytesPerSecond = 500000;
 
-constexpr std::size_t kMaxCount = 1U << 20U; // limit for materials, cameras, files
-
 class Receiver
 {
 public:
@@ -55,65 +53,50 @@ public:
 			report(m_source.findings, id, tally);
 		}
 		report(m_source.findings, "missing-uvs", m_no_uvs);
-		for (uint64_t left = count(); left > 0; --left)
+		for (const std::string& file : names())
 		{
-			addFile(m_source.files, m_from.text());
+			addFile(m_source.files, file);
 		}
-		for (uint64_t left = count(); left > 0; --left)
-		{
-			m_source.missing.push_back(m_from.text());
-		}
+		const std::vector<std::string> missing = names();
+		m_source.missing.insert(m_source.missing.end(), missing.begin(), missing.end());
 	}
 
 private:
-	uint64_t count()
+	std::vector<std::string> names()
 	{
-		const auto value = m_from.value<uint64_t>();
-		if (value > kMaxCount)
-		{
-			throw StreamEnded{};
-		}
-		return value;
-	}
-
-	PlacedPicture picture()
-	{
-		PlacedPicture picture;
-		picture.name = m_from.text();
-		static_cast<MaskUse&>(picture) = m_from.value<MaskUse>();
-		picture.uv_of_set = m_from.value<glm::dmat3>();
-		m_from.values(picture.bytes, kMaxFileBytes);
-		return picture;
+		std::vector<std::string> sent;
+		receive(sent, m_from);
+		return sent;
 	}
 
 	void materials()
 	{
 		for (uint64_t left = m_from.value<uint32_t>(); left > 0; --left)
 		{
+			FileMaterial sent;
+			receive(sent, m_from, kMaxFileBytes);
 			SourceMaterial& made = m_source.materials.emplace_back();
-			made.material.name = m_from.text();
-			made.material.alpha = static_cast<double>(m_from.value<float>());
-			made.material.two_sided = m_from.value<int>() != 0;
-			made.material.colour = m_from.value<glm::vec3>();
-			PlacedPicture opacity = picture();
-			const PlacedPicture colour = picture();
-			made.uv_of_set = opacity.name.empty() ? colour.uv_of_set : opacity.uv_of_set;
+			made.material.name = sent.name;
+			made.material.alpha = static_cast<double>(sent.alpha);
+			made.material.two_sided = sent.two_sided;
+			made.material.colour = sent.colour;
+			made.uv_of_set = sent.opacity.name.empty() ? sent.picture.uv_of_set : sent.opacity.uv_of_set;
 			if (!std::isfinite(made.material.alpha) || made.material.alpha < 0.0 || made.material.alpha > 1.0)
 			{
 				refuseInput(m_path + ": material '" + made.material.name + "'",
 							"an opacity of " + std::to_string(made.material.alpha), "0 to 1");
 			}
-			if (!opacity.name.empty())
+			if (!sent.opacity.name.empty())
 			{
 				made.material.alpha_mode = AlphaMode::mask;
-				made.mask = maskOf(std::move(opacity));
+				made.mask = maskOf(std::move(sent.opacity));
 			}
 			else if (made.material.alpha < 1.0)
 			{
 				made.material.alpha_mode = AlphaMode::blend;
 			}
-			made.material.picture = pictureOf(colour);
-			made.material.wraps = {colour.wrap_u, colour.wrap_v};
+			made.material.picture = pictureOf(sent.picture);
+			made.material.wraps = {sent.picture.wrap_u, sent.picture.wrap_v};
 		}
 	}
 
@@ -154,11 +137,7 @@ private:
 	{
 		for (uint64_t left = m_from.value<uint32_t>(); left > 0; --left)
 		{
-			LevelCamera camera;
-			camera.name = m_from.text();
-			camera.world_from_camera = m_from.value<glm::dmat4>();
-			camera.lens = m_from.value<Lens>();
-			m_source.cameras.push_back(camera);
+			m_source.cameras.push_back({m_from.text(), m_from.value<glm::dmat4>(), m_from.value<Lens>()}); // in that order
 		}
 	}
 
@@ -171,10 +150,10 @@ private:
 		}
 		Mesh& mesh = m_level.meshes.emplace_back();
 		mesh.name = m_from.text();
-		for (uint64_t left = m_from.value<uint32_t>(); left > 0; --left)
+		for (const std::string& name : names())
 		{
 			const auto next = static_cast<int>(m_level.nodes.size());
-			const auto [known, is_new] = m_nodes.try_emplace({mesh.node, m_from.text()}, next);
+			const auto [known, is_new] = m_nodes.try_emplace({mesh.node, name}, next);
 			if (is_new)
 			{
 				m_level.nodes.push_back({known->first.second, mesh.node, {}});
@@ -239,18 +218,6 @@ private:
 	Tally m_no_uvs;                                     // masked meshes without coordinates
 	std::map<std::pair<int, std::string>, int> m_nodes; // by parent and name
 };
-
-std::size_t bytesOf(const std::vector<std::string>& files)
-{
-	std::size_t bytes = 0;
-	for (const std::string& file : files)
-	{
-		std::error_code failed;
-		const std::uintmax_t size = std::filesystem::file_size(nativePath(file), failed);
-		bytes += failed ? 0 : static_cast<std::size_t>(size);
-	}
-	return bytes;
-}
 
 // Decodes mask pictures and converts materials and cameras to the level's form.
 
@@ -382,7 +349,9 @@ IsolationLimits levelLimits(std::size_t bytes)
 
 void readGeometry(const std::string& path, const LoadSettings& settings, LevelSource& source, Level& level)
 {
-	const std::size_t bytes = bytesOf(source.files);
+	std::error_code failed;
+	const std::uintmax_t size = std::filesystem::file_size(nativePath(path), failed);
+	const std::size_t bytes = failed ? 0 : static_cast<std::size_t>(size);
 	isolate(
 		{kLevelWorker, kReadLevel}, path, levelLimits(bytes),
 		[&](ValueWriter& to)

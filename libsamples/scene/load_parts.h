@@ -56,6 +56,26 @@ struct PlacedPicture : MaskSource
 	glm::dmat3 uv_of_set{1.0};
 };
 
+// A material of a format with polygons, as its reader sends it.
+struct FileMaterial
+{
+	std::string name;
+	float alpha = 1.0F; // opacity
+	bool two_sided = false;
+	glm::vec3 colour{1.0F};
+	PlacedPicture opacity; // an empty name means none
+	PlacedPicture picture; // of the colour, likewise
+};
+inline void visit(Archive& archive, PlacedPicture& picture)
+{
+	archive(picture.name, picture.wrap_u, picture.wrap_v, picture.channel, picture.base, picture.gain, picture.uv_of_set,
+			picture.bytes);
+}
+inline void visit(Archive& archive, FileMaterial& material)
+{
+	archive(material.name, material.alpha, material.two_sided, material.colour, material.opacity, material.picture);
+}
+
 struct SourceMaterial
 {
 	Material material;      // complete except for mask, mean_alpha and coverage
@@ -205,8 +225,8 @@ std::string endingOf(const std::string& path);
 void finishMaterials(const LoadSettings& settings, LevelSource& source, Level& level);
 
 // Drops the triangles with keep[i] = 0, vertices that no other triangle uses (their indices may be out of range), and meshes that
-// become empty. Preserves the order. `before`: becomes the earlier index of each vertex that is left.
-void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std::vector<uint32_t>* before = nullptr);
+// become empty. Preserves the order. Returns the earlier index of each vertex that is left.
+std::vector<uint32_t> compactLevel(Level& level, std::span<const uint8_t> keep, int threads);
 
 // TEXCOORD_1 of a glTF, or another set, one per vertex of `level`, the result of loadLevel() for the same name and settings; NaN
 // for vertices without. The level's vertices do not depend on these coordinates.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Protocol between gltf_expand.cpp and the worker that decodes compressed glTF data (decode_meshopt.cpp, decode_draco.cpp).
+// Component types, and the protocol between gltf_expand.cpp and the worker that decodes compressed glTF data (level_worker.cpp,
+// decode_draco.cpp).
 #pragma once
 
 #include "core/value_stream.h"
@@ -33,7 +34,20 @@ struct MeshoptView
 	Filter filter = Filter::none;
 };
 inline constexpr const char* kDecodeMeshopt = "decode meshopt";
-void decodeMeshopt(ValueReader& request, ValueWriter& answer);
+
+// Calls use(T{}) with the type T of a glTF component, 5120 to 5126.
+template <class Use> auto withComponent(uint64_t component, const Use& use)
+{
+	switch (component)
+	{
+	case 5120: return use(int8_t{});
+	case 5121: return use(uint8_t{});
+	case 5122: return use(int16_t{});
+	case 5123: return use(uint16_t{});
+	case 5125: return use(uint32_t{});
+	default: return use(float{});
+	}
+}
 
 // Decodes meshes of KHR_draco_mesh_compression. Request: a name for errors, the number of meshes, and for each its bytes and its
 // attributes as below. Answer: for each its number of vertices, three 32-bit indices per triangle, and the values of each attribute

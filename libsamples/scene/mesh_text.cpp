@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -189,7 +188,7 @@ private:
 		{
 			if (words.size() > 2 && words[1] == "TextureFile")
 			{
-				material.colour.name = textFrom(words, 2);
+				material.picture.name = textFrom(words, 2);
 			}
 			return;
 		}
@@ -201,9 +200,8 @@ private:
 		{
 			Element& element = m_elements.emplace_back();
 			element.name = words[1];
-			const char* const end = words[2].data() + words[2].size();
-			const auto [stop, wrong] = std::from_chars(words[2].data(), end, element.count);
-			if (wrong != std::errc{} || stop != end || element.count > 3 * uint64_t{kMaxTriangles})
+			element.count = nook::numberFrom<uint64_t>(words[2]).value_or(UINT64_MAX);
+			if (element.count > 3 * uint64_t{kMaxTriangles})
 			{
 				fail("a count that is none, or too large", "0 to " + std::to_string(3 * kMaxTriangles));
 			}
@@ -539,11 +537,8 @@ std::string quoted(std::string_view word)
 
 std::optional<int> wholeOf(std::string_view word)
 {
-	int value = 0;
 	const bool positive = word.starts_with('+') && !word.starts_with("+-");
-	const char* const end = word.data() + word.size();
-	const auto [stop, wrong] = std::from_chars(word.data() + (positive ? 1 : 0), end, value);
-	return wrong == std::errc{} && stop == end ? std::optional(value) : std::nullopt;
+	return nook::numberFrom<int>(word.substr(positive ? 1 : 0));
 }
 
 void splitWords(std::string_view line, std::vector<std::string_view>& words)

@@ -251,17 +251,15 @@ class PictureLine
 public:
 	PictureLine(const std::vector<std::string_view>& words, const TextPlace& place) : m_words(words), m_place(place) {}
 
-	MtlPicture read()
+	// `ignored`: becomes the first unsupported option.
+	PlacedPicture read(std::string& ignored)
 	{
-		MtlPicture picture;
+		PlacedPicture picture;
 		picture.channel = MaskChannel::alpha_or_first;
 		while (m_at < m_words.size() && m_words[m_at].starts_with('-'))
 		{
 			m_option = lowered(m_words[m_at++]);
-			if (take(picture) && picture.ignored.empty())
-			{
-				picture.ignored = m_option;
-			}
+			ignored = take(picture) && ignored.empty() ? m_option : ignored;
 		}
 		if (m_at >= m_words.size())
 		{
@@ -404,11 +402,12 @@ float shareIn(const std::vector<std::string_view>& words, const TextPlace& place
 }
 
 // Colours decide no shape, so their defects are not errors.
-MtlPicture colourOf(const std::vector<std::string_view>& words, const TextPlace& place)
+PlacedPicture colourOf(const std::vector<std::string_view>& words, const TextPlace& place)
 {
 	try
 	{
-		return PictureLine(words, place).read();
+		std::string any;
+		return PictureLine(words, place).read(any);
 	}
 	catch (const Error&)
 	{
@@ -454,15 +453,16 @@ void readMtl(const std::string& text, const std::string& path, MtlMaterials& mat
 		}
 		else if (keyword == "map_d")
 		{
-			material->opacity = PictureLine(words, place).read();
+			material->ignored.clear();
+			material->opacity = PictureLine(words, place).read(material->ignored);
 		}
 		else if (keyword == "map_kd")
 		{
-			material->colour = colourOf(words, place);
+			material->picture = colourOf(words, place);
 		}
 		else if (keyword == "kd")
 		{
-			material->kd = diffuseOf(words);
+			material->colour = diffuseOf(words);
 		}
 	};
 	forLines(text, path, false, take);

@@ -123,7 +123,7 @@ std::string visibilityExr(int width_px, int height_px, std::span<const Reference
 	{
 		image.values.insert(image.values.end(), {static_cast<float>(value.visibility), static_cast<float>(value.standard_error)});
 	}
-	return exrBytes(image);
+	return exrBytes(std::move(image));
 }
 
 std::string bentExr(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes)
@@ -136,7 +136,7 @@ std::string bentExr(int width_px, int height_px, std::span<const ReferenceValue>
 							{value.bent.x, value.bent.y, value.bent.z, static_cast<float>(coneAngle(value.visibility)),
 							 static_cast<float>(value.standard_error), static_cast<float>(value.visibility)});
 	}
-	return exrBytes(image);
+	return exrBytes(std::move(image));
 }
 
 std::string bentExr(int width_px, int height_px, std::span<const glm::vec3> bent, std::span<const float> visibility,
@@ -149,7 +149,7 @@ std::string bentExr(int width_px, int height_px, std::span<const glm::vec3> bent
 		const auto cone = static_cast<float>(coneAngle(static_cast<double>(visibility[i])));
 		image.values.insert(image.values.end(), {bent[i].x, bent[i].y, bent[i].z, cone, visibility[i]});
 	}
-	return exrBytes(image);
+	return exrBytes(std::move(image));
 }
 
 std::string bentPng(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes)

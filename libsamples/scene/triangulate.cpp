@@ -3,7 +3,7 @@
 //   Gary H. Meisters: Polygons Have Ears. The American Mathematical Monthly 82 (6), 1975.
 // Cuts the next ear in order, whatever its shape, because long triangles do not matter for rays.
 #include "core/lists.h"
-#include "scene/cut_faces.h"
+#include "scene/mesh_text.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -193,11 +193,7 @@ void FaceCutter::send(const FileMesh& mesh, const std::vector<std::string>& path
 	}
 	to.value(MeshHead{mesh.material, false});
 	to.text(mesh.name);
-	to.value(static_cast<uint32_t>(path.size()));
-	for (const std::string& name : path)
-	{
-		to.text(name);
-	}
+	nook::send(path, to);
 	to.values(mesh.positions);
 	to.values(mesh.normals);
 	to.values(mesh.uvs);

@@ -255,7 +255,7 @@ public:
 		}
 		else
 		{
-			std::string bytes = levelGlb(baked(), "nook " + std::string(of.version), places);
+			std::string bytes = levelGlb(baked(), "nook " + std::string(of.version), &places);
 			file = openGlb(std::move(bytes), m_level.name);
 		}
 		bake.visibility = values.visibility;

@@ -9,7 +9,7 @@
 #include "core/round.h"
 #include "methods/aov_text.h"
 #include "methods/volume_kernels.h"
-#include "scene/tracer_tree.h"
+#include "scene/embree.h"
 #include "volume/receivers.h"
 #include "volume/volume_glb.h"
 #include "volume/volumes.h"

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Worker of core/image_codec.h for OpenEXR files, and the only file that uses OpenEXR, which loads thirty times faster than
-// OpenImageIO. It writes the same bytes and reads the same values as OpenImageIO.
+// OpenEXR files in the worker of core/picture_worker.cpp, and the only file that uses OpenEXR. It writes the same bytes and reads
+// the same values as OpenImageIO.
 #include "core/image_codec.h"
 
 #include "core/error.h"
-#include "core/file.h"
-#include "core/isolate.h"
 
 #include <Iex.h>
 #include <ImfChannelList.h>
@@ -42,11 +40,11 @@ template <class T> Imath::Matrix44<T> matrixOf(const ImageMatrix& matrix)
 	return made;
 }
 
-Imf::Header headerOf(const ImageToEncode& image)
+Imf::Header headerOf(const Image& image)
 {
 	Imf::Header header(image.width_px, image.height_px);
 	header.compression() = Imf::NO_COMPRESSION;
-	for (const Note& note : image.attributes)
+	for (const Note& note : image.notes)
 	{
 		if (note.key == "compression")
 		{
@@ -69,34 +67,6 @@ Imf::Header headerOf(const ImageToEncode& image)
 		}
 	}
 	return header;
-}
-
-void encode(ValueReader& request, ValueWriter& answer)
-{
-	ImageToEncode image;
-	receive(image, request);
-	std::vector<float> pixels(image.bytes() / sizeof(float));
-	request.bytes(pixels.data(), image.bytes());
-	const std::vector<std::string>& names = image.channels;
-	Imf::Header header = headerOf(image);
-	Imf::FrameBuffer buffer;
-	for (std::size_t i = 0; i < names.size(); ++i)
-	{
-		header.channels().insert(names[i], Imf::Channel(Imf::FLOAT));
-		buffer.insert(names[i], sliceOf(pixels.data(), i, names.size(), image.width_px));
-	}
-	Imf::StdOSStream memory;
-	try
-	{
-		Imf::OutputFile output(memory, header, 0);
-		output.setFrameBuffer(buffer);
-		output.writePixels(image.height_px);
-	}
-	catch (const std::exception& error)
-	{
-		throw Error(ExitCode::runtime, std::string("image: ") + error.what());
-	}
-	answer.values(memory.str());
 }
 
 // Lower-case part of a channel's name after its layer.
@@ -223,11 +193,6 @@ template <class T, class Read> Decoded<T> unlessBroken(const Read& read)
 	}
 }
 
-Decoded<Image> decoded(const std::string& bytes, const std::string& name)
-{
-	return unlessBroken<Image>([&] { return imageOf(bytes, name); });
-}
-
 std::optional<AlphaImage> alphaOf(const std::string& bytes, const EncodedAlpha& picture, std::size_t max_texels)
 {
 	Imf::StdISStream memory;
@@ -266,18 +231,42 @@ std::optional<AlphaImage> alphaOf(const std::string& bytes, const EncodedAlpha& 
 		picture, max_texels, readRow);
 }
 
-Decoded<AlphaImage> decodedAlpha(std::string_view bytes, const EncodedAlpha& picture, std::size_t max_texels)
+} // namespace
+
+void encodeExr(ValueReader& request, ValueWriter& answer)
+{
+	Image image;
+	receive(image, request, SIZE_MAX);
+	const std::vector<std::string>& names = image.channels;
+	Imf::Header header = headerOf(image);
+	Imf::FrameBuffer buffer;
+	for (std::size_t i = 0; i < names.size(); ++i)
+	{
+		header.channels().insert(names[i], Imf::Channel(Imf::FLOAT));
+		buffer.insert(names[i], sliceOf(image.values.data(), i, names.size(), image.width_px));
+	}
+	Imf::StdOSStream memory;
+	try
+	{
+		Imf::OutputFile output(memory, header, 0);
+		output.setFrameBuffer(buffer);
+		output.writePixels(image.height_px);
+	}
+	catch (const std::exception& error)
+	{
+		throw Error(ExitCode::runtime, std::string("image: ") + error.what());
+	}
+	answer.values(memory.str());
+}
+
+Decoded<Image> decodeExr(const std::string& bytes, const std::string& name)
+{
+	return unlessBroken<Image>([&] { return imageOf(bytes, name); });
+}
+
+Decoded<AlphaImage> alphaOfExr(std::string_view bytes, const EncodedAlpha& picture, std::size_t max_texels)
 {
 	return unlessBroken<AlphaImage>([&] { return alphaOf(std::string(bytes), picture, max_texels); });
 }
 
-} // namespace
 } // namespace nook
-
-int main(int argc, char** argv)
-{
-	using namespace nook;
-	constexpr std::array<WorkerFunction, 3> kFunctions{
-		{{kEncode, encode}, {kDecode, answerImage<decoded>}, {kDecodeAlphas, answerAlphas<decodedAlpha>}}};
-	return serveRequests(argc, argv, kFunctions);
-}

@@ -213,7 +213,10 @@ void turnBack(Level& level, VertexBake& bake, std::span<const uint8_t> turned)
 		{
 			seen[corner[k]] |= is_turned ? 2U : 1U;
 		}
-		is_turned ? std::swap(corner.y, corner.z) : void();
+		if (is_turned)
+		{
+			std::swap(corner.y, corner.z);
+		}
 	}
 	for (std::size_t v = 0; v < seen.size() && !bake.back.empty(); ++v)
 	{

@@ -72,7 +72,10 @@ private:
 	{
 		if (m_move)
 		{
-			m_well ? m_move(data, size) : void();
+			if (m_well)
+			{
+				m_move(data, size);
+			}
 			return;
 		}
 		if (!m_reads)

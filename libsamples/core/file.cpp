@@ -245,7 +245,10 @@ std::string readFile(const std::string& path)
 	const std::uintmax_t size = std::filesystem::file_size(nativePath(path), unknown);
 	const auto checkSize = [&path](std::uintmax_t so_far)
 	{
-		so_far > kMaxFileBytes ? fail(path, "read", EFBIG) : void();
+		if (so_far > kMaxFileBytes)
+		{
+			fail(path, "read", EFBIG);
+		}
 	};
 	if (!unknown)
 	{

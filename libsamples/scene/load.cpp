@@ -568,7 +568,10 @@ void addPages(const std::string& path, const Level& level, const RunSettings& ru
 		baked.pages[image] = {"", read[0].width_px, read[0].height_px, Wrap::clamp, Wrap::clamp, std::move(read[0].alpha)};
 	}
 	baked.uvs = secondSet(path, {}, level, kOcclusionSet, run);
-	baked.uvs.empty() ? baked.pages.clear() : void();
+	if (baked.uvs.empty())
+	{
+		baked.pages.clear();
+	}
 }
 
 } // namespace

@@ -13,30 +13,10 @@ namespace nook
 {
 
 // Names as on the command line, in the order of the enumerators.
-template <> std::span<const std::string_view> namesOf<DepthKind>()
-{
-	static constexpr std::array<std::string_view, 3> kNames{"linear", "distance", "device"};
-	return kNames;
-}
-
-template <> std::span<const std::string_view> namesOf<ClipRange>()
-{
-	static constexpr std::array<std::string_view, 2> kNames{"minus-one-to-one", "zero-to-one"};
-	return kNames;
-}
-
-template <> std::span<const std::string_view> namesOf<NormalSpace>()
-{
-	static constexpr std::array<std::string_view, 2> kNames{"view", "world"};
-	return kNames;
-}
-
-template <> std::span<const std::string_view> namesOf<NormalRange>()
-{
-	static constexpr std::array<std::string_view, 2> kNames{"plus-minus-one", "zero-to-one"};
-	return kNames;
-}
-
+template <> inline constexpr std::array<std::string_view, 3> kNamesOf<DepthKind>{"linear", "distance", "device"};
+template <> inline constexpr std::array<std::string_view, 2> kNamesOf<ClipRange>{"minus-one-to-one", "zero-to-one"};
+template <> inline constexpr std::array<std::string_view, 2> kNamesOf<NormalSpace>{"view", "world"};
+template <> inline constexpr std::array<std::string_view, 2> kNamesOf<NormalRange>{"plus-minus-one", "zero-to-one"};
 namespace
 {
 

@@ -19,12 +19,7 @@ namespace nook
 {
 
 // Names as on the command line, in the order of the enumerators.
-template <> std::span<const std::string_view> namesOf<ErrorMetric>()
-{
-	static constexpr std::array<std::string_view, 7> kNames{"rmse", "mae", "p95", "max", "ssim", "flip", "eq14"};
-	return kNames;
-}
-
+template <> inline constexpr std::array<std::string_view, 7> kNamesOf<ErrorMetric>{"rmse", "mae", "p95", "max", "ssim", "flip", "eq14"};
 namespace
 {
 

@@ -6,24 +6,6 @@
 namespace nook
 {
 
-template <> std::span<const std::string_view> namesOf<Origin>()
-{
-	static constexpr std::array<std::string_view, 3> kNames{"paper", "ours", "rays"};
-	return kNames;
-}
-
-template <> std::span<const std::string_view> namesOf<SampleSource>()
-{
-	static constexpr std::array<std::string_view, 6> kNames{"own", "electro", "uniform", "refined", "tile", "spiral"};
-	return kNames;
-}
-
-template <> std::span<const std::string_view> namesOf<GridSize>()
-{
-	static constexpr std::array<std::string_view, 3> kNames{"quick", "normal", "full"};
-	return kNames;
-}
-
 std::vector<FilterChoice> filtersFor(GridSize size)
 {
 	return upTo<FilterChoice>(size, {kFive}, {kFive, kWindow}, {kNoFilter, kFive, kNine, kWindow});

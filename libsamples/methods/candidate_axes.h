@@ -18,7 +18,7 @@ enum class Origin
 	ours,  // nook's patterns and tiles, with matching filters and resolutions, and merged, dropped and fitted volumes
 	rays,
 };
-template <> std::span<const std::string_view> namesOf<Origin>();
+template <> inline constexpr std::array<std::string_view, 3> kNamesOf<Origin>{"paper", "ours", "rays"};
 
 // Where the samples of a screen-space method come from.
 enum class SampleSource
@@ -30,7 +30,7 @@ enum class SampleSource
 	tile,    // nook's pattern, with jointly optimised variants for 4 × 4 pixels; at most kMaxTileCount samples
 	spiral,  // golden-angle spiral, the same for all pixels: for definitions
 };
-template <> std::span<const std::string_view> namesOf<SampleSource>();
+template <> inline constexpr std::array<std::string_view, 6> kNamesOf<SampleSource>{"own", "electro", "uniform", "refined", "tile", "spiral"};
 inline constexpr int kMaxTileCount = 16;
 
 enum class GridSize
@@ -39,7 +39,7 @@ enum class GridSize
 	normal, // 337
 	full,   // 1054: all products of counts, sources, filters, resolutions and features
 };
-template <> std::span<const std::string_view> namesOf<GridSize>();
+template <> inline constexpr std::array<std::string_view, 3> kNamesOf<GridSize>{"quick", "normal", "full"};
 
 struct FilterChoice
 {

@@ -4,10 +4,11 @@
 
 #include "core/progress.h"
 #include "pattern/pattern.h"
-#include <cstddef>
-#include <functional>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -75,8 +76,14 @@ int defaultStarts(const Recipe& recipe);
 // The command that makes this pattern, without outputs and defaults: "nook pattern --domain disk --count 9 --symmetric".
 std::string patternCommand(const Recipe& recipe);
 
-// Names as on the command line and in JSON. namesOf<Enum>() lists them in enumerator order.
-template <class Enum> std::span<const std::string_view> namesOf();
+// Names as on the command line and in JSON, in enumerator order.
+template <class Enum> inline constexpr std::array<std::string_view, 0> kNamesOf{};
+
+template <class Enum> std::span<const std::string_view> namesOf()
+{
+	static_assert(!kNamesOf<Enum>.empty(), "an enumeration without names");
+	return kNamesOf<Enum>;
+}
 
 template <class Enum> std::string_view nameOf(Enum value)
 {
@@ -96,15 +103,16 @@ template <class Enum> std::optional<Enum> valueNamed(std::string_view name)
 	return std::nullopt;
 }
 
-template <> std::span<const std::string_view> namesOf<Domain>();
+template <> inline constexpr std::array<std::string_view, 5> kNamesOf<Domain>{"disk", "ball", "sphere", "hemisphere", "slice"};
 
 // The domains of stand-alone patterns.
 std::span<const std::string_view> patternDomains();
 
-template <> std::span<const std::string_view> namesOf<Method>();
-template <> std::span<const std::string_view> namesOf<Minimise>();
-template <> std::span<const std::string_view> namesOf<WeightRule>();
-template <> std::span<const std::string_view> namesOf<Order>();
+template <> inline constexpr std::array<std::string_view, 8> kNamesOf<Method>{"refine",  "electro", "equal", "random",
+														   "poisson", "halton",  "vogel", "lloyd"};
+template <> inline constexpr std::array<std::string_view, 4> kNamesOf<Minimise>{"rms", "noise", "cliff", "window"};
+template <> inline constexpr std::array<std::string_view, 3> kNamesOf<WeightRule>{"voronoi", "equal", "fitted"};
+template <> inline constexpr std::array<std::string_view, 2> kNamesOf<Order>{"none", "progressive"};
 
 // Called with a start's number and its current points while they move; several starts run in parallel if there are several threads.
 // Never changes the result. May be empty.

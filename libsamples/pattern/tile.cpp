@@ -20,12 +20,6 @@
 namespace nook
 {
 
-template <> std::span<const std::string_view> namesOf<TileKind>()
-{
-	static constexpr std::array<std::string_view, 3> names{"points", "even", "random"};
-	return names;
-}
-
 namespace
 {
 

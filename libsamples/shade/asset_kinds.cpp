@@ -20,12 +20,6 @@
 namespace nook
 {
 
-template <> std::span<const std::string_view> namesOf<VolumeRecipe>()
-{
-	static constexpr std::array<std::string_view, 3> kNames{"triangles", "built", "masks"};
-	return kNames;
-}
-
 namespace
 {
 

@@ -22,7 +22,7 @@ enum class Variant
 	centred,
 	symmetric,
 };
-template <> std::span<const std::string_view> namesOf<Variant>();
+template <> inline constexpr std::array<std::string_view, 3> kNamesOf<Variant>{"free", "centred", "symmetric"};
 
 struct NoiseReportSettings
 {

@@ -376,18 +376,6 @@ std::string errorText(const CandidateComparison& found)
 
 } // namespace
 
-template <> std::span<const std::string_view> namesOf<ErrorMeasure>()
-{
-	static constexpr std::array<std::string_view, 3> kNames{"rmse", "eq14", "flip"};
-	return kNames;
-}
-
-template <> std::span<const std::string_view> namesOf<OverLevels>()
-{
-	static constexpr std::array<std::string_view, 2> kNames{"mean", "worst"};
-	return kNames;
-}
-
 TuneSearchSettings rungsFor(std::size_t views, int repetitions)
 {
 	TuneSearchSettings settings;

@@ -299,24 +299,4 @@ std::vector<double> equalisingPowers(Domain domain, std::span<const glm::dvec3> 
 	return powers;
 }
 
-void relaxEqual(const Layout& layout, Points& points, int rounds, const Seen& seen)
-{
-	for (int round = 0; round < rounds; ++round)
-	{
-		const std::vector<double> powers = equalisingPowers(layout.domain(), points);
-		const Cells cells = exactCells(layout.domain(), points, powers);
-		const Points target = centroidsOf(layout, cells);
-		const double move = greatestMove(points, target);
-		points = target;
-		if (seen)
-		{
-			seen(points);
-		}
-		if (move < 1e-6)
-		{
-			break;
-		}
-	}
-}
-
 } // namespace nook

@@ -158,7 +158,7 @@ OptionRow debugRow(ShadeSettings& settings)
 	rules.excludes.push_back({"--volumes", "one of them", "with --volumes" + nothing});
 	rules.excludes.push_back({"--filter or --taps", "one of them, since views are drawn before any filter"});
 	return {
-		"--debug", takesChoice(debugNames(), settings.debug),
+		"--debug", takesChoice(namesOf<DebugView>(), settings.debug),
 		"Draws what happens instead of visibility, before any filter, 0 to 1: edges, where a filter finds another surface beside "
 		"a pixel; lod, the mean level of coarser depths that samples read, of all; layers, those that StatVO looks at, of all; "
 		"samples, those taken, of all; noise, the standard deviation over all variants of the window",

@@ -4,15 +4,12 @@
 #include "core/error.h"
 
 #include <algorithm>
-#include <array>
 #include <string>
 
 namespace nook
 {
 namespace
 {
-
-constexpr std::array<std::string_view, 5> kViews{"edges", "lod", "layers", "samples", "noise"};
 
 // The option with which the method has the view; empty: none.
 std::string_view optionThatShows(DebugView view, const MethodRow& row)
@@ -71,19 +68,6 @@ std::string namesOfTaking(const FeatureRow& row, bool emitted)
 	return methodNames([&](const MethodRow& method) { return takesFeature(method, row) && (!emitted || method.emitted); }, " or ");
 }
 
-} // namespace
-
-void refuseSlicesWithTile(const GivenFeatures& given)
-{
-	if (isAmong(given, "--slices"))
-	{
-		throw Error(ExitCode::usage, "--slices: found with a tile, whose own slices a pixel has, expected one of them");
-	}
-}
-
-namespace
-{
-
 // Values that the table alone cannot tell: layers, taps, bands.
 void checkValues(const GivenFeatures& given, const ShadeSettings& settings)
 {
@@ -122,6 +106,14 @@ void checkValues(const GivenFeatures& given, const ShadeSettings& settings)
 }
 
 } // namespace
+
+void refuseSlicesWithTile(const GivenFeatures& given)
+{
+	if (isAmong(given, "--slices"))
+	{
+		throw Error(ExitCode::usage, "--slices: found with a tile, whose own slices a pixel has, expected one of them");
+	}
+}
 
 void checkShadeFeatures(const GivenFeatures& given, const ShadeSettings& settings)
 {
@@ -185,14 +177,9 @@ ShadeSettings withRecipe(const ShadeSettings& settings, const std::optional<Meth
 	return result;
 }
 
-std::span<const std::string_view> debugNames()
-{
-	return kViews;
-}
-
 std::string_view debugName(const ShadeSettings& settings)
 {
-	return settings.debug ? kViews[static_cast<std::size_t>(*settings.debug)] : "visibility";
+	return settings.debug ? nameOf(*settings.debug) : "visibility";
 }
 
 void checkDebug(const ShadeSettings& settings)

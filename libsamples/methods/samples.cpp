@@ -17,7 +17,6 @@
 
 namespace nook
 {
-
 namespace
 {
 
@@ -41,6 +40,26 @@ std::size_t twinOf(const Pattern& pattern, std::size_t i)
 		}
 	}
 	return pattern.count();
+}
+
+MaskTables madeTables(int count)
+{
+	MaskTables tables;
+	tables.directions = count;
+	for (const glm::vec4& d : maskDirections(count))
+	{
+		tables.rays.push_back(glm::vec3(d) * (1.0F - d.w));
+	}
+	tables.rays.resize((tables.rays.size() + 127) / 128 * 128);
+	volume_kernels::Kernels kernels;
+	kernels.rays = tables.rays;
+	const int side = kernels.nookHalfSpaces();
+	const auto fours = static_cast<int>(tables.rays.size() / 128);
+	for (int i = 0; i < fours * side * side; ++i)
+	{
+		tables.half_spaces.push_back(kernels.nookHalfSpaceTexel({i % side, i / side % side}, i / (side * side)));
+	}
+	return tables;
 }
 
 } // namespace
@@ -131,31 +150,6 @@ std::vector<glm::vec4> maskDirections(int count)
 	}
 	return directions;
 }
-
-namespace
-{
-
-MaskTables madeTables(int count)
-{
-	MaskTables tables;
-	tables.directions = count;
-	for (const glm::vec4& d : maskDirections(count))
-	{
-		tables.rays.push_back(glm::vec3(d) * (1.0F - d.w));
-	}
-	tables.rays.resize((tables.rays.size() + 127) / 128 * 128);
-	volume_kernels::Kernels kernels;
-	kernels.rays = tables.rays;
-	const int side = kernels.nookHalfSpaces();
-	const auto fours = static_cast<int>(tables.rays.size() / 128);
-	for (int i = 0; i < fours * side * side; ++i)
-	{
-		tables.half_spaces.push_back(kernels.nookHalfSpaceTexel({i % side, i / side % side}, i / (side * side)));
-	}
-	return tables;
-}
-
-} // namespace
 
 const MaskTables& maskTablesOf(int count)
 {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/shade.h"
 
-#include "core/decimal.h"
 #include "core/error.h"
 #include "core/lists.h"
 #include "core/parallel.h"
@@ -218,13 +217,9 @@ std::unique_ptr<GlPass> programOf(GlSession& session, const ShadePass& pass, con
 	{
 		program->bind(kSamplers[static_cast<std::size_t>(read.slot)], *pictures[read.picture]);
 	}
-	if (pass.leaves)
+	if (pass.leaves || pass.fills)
 	{
-		program->leave(inputs.left);
-	}
-	if (pass.fills)
-	{
-		program->fill(inputs.left);
+		program->use(inputs.left, pass.fills);
 	}
 	program->bindBlock("NookBlock", std::as_bytes(std::span(&pass.block, 1)));
 	return program;
@@ -365,7 +360,7 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 	shaded.tables_by = compute ? "compute" : "fragments";
 	const GlTexture& last = *pictures[plan.passes.back().picture];
 	const bool quads = last.shape().format == PictureFormat::quad;
-	setResult(shaded, quads ? readQuads(last) : readScalar(last), quads);
+	setResult(shaded, readFloats(last), quads);
 	setTimes(shaded, times);
 	return shaded;
 }

@@ -76,6 +76,14 @@ int defaultStarts(const Recipe& recipe);
 // The command that makes this pattern, without outputs and defaults: "nook pattern --domain disk --count 9 --symmetric".
 std::string patternCommand(const Recipe& recipe);
 
+// Structure of a pattern in the catalogue and in the report on noise.
+enum class Variant
+{
+	free,
+	centred,
+	symmetric,
+};
+
 // Names as on the command line and in JSON, in enumerator order.
 template <class Enum> inline constexpr std::array<std::string_view, 0> kNamesOf{};
 
@@ -108,11 +116,13 @@ template <> inline constexpr std::array<std::string_view, 5> kNamesOf<Domain>{"d
 // The domains of stand-alone patterns.
 std::span<const std::string_view> patternDomains();
 
-template <> inline constexpr std::array<std::string_view, 8> kNamesOf<Method>{"refine",  "electro", "equal", "random",
-														   "poisson", "halton",  "vogel", "lloyd"};
+template <>
+inline constexpr std::array<std::string_view, 8> kNamesOf<Method>{"refine",  "electro", "equal", "random",
+																  "poisson", "halton",  "vogel", "lloyd"};
 template <> inline constexpr std::array<std::string_view, 4> kNamesOf<Minimise>{"rms", "noise", "cliff", "window"};
 template <> inline constexpr std::array<std::string_view, 3> kNamesOf<WeightRule>{"voronoi", "equal", "fitted"};
 template <> inline constexpr std::array<std::string_view, 2> kNamesOf<Order>{"none", "progressive"};
+template <> inline constexpr std::array<std::string_view, 3> kNamesOf<Variant>{"free", "centred", "symmetric"};
 
 // Called with a start's number and its current points while they move; several starts run in parallel if there are several threads.
 // Never changes the result. May be empty.

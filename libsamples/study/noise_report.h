@@ -16,14 +16,6 @@
 namespace nook
 {
 
-enum class Variant
-{
-	free,
-	centred,
-	symmetric,
-};
-template <> inline constexpr std::array<std::string_view, 3> kNamesOf<Variant>{"free", "centred", "symmetric"};
-
 struct NoiseReportSettings
 {
 	int max_count = 64;   // counts 1 to this are made, 1 to kMaxReportCount

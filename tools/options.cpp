@@ -141,6 +141,23 @@ void checkDistinct(const std::vector<std::string>& written, const std::vector<st
 	}
 }
 
+// A number within a range.
+template <class Number>
+OptionValue takesWithin(const std::function<void(Number)>& take, Number least, Number most, const std::string& kind,
+						const std::string& expected)
+{
+	const auto check = [take, least, most, expected](const std::string& name, const std::string& text)
+	{
+		const std::optional<Number> number = numberFrom<Number>(text);
+		if (!number || !(*number >= least && *number <= most))
+		{
+			refuseValue(name, text, expected);
+		}
+		take(*number);
+	};
+	return takesParsed(kind, check);
+}
+
 } // namespace
 
 Facts verbFacts(std::string_view verb)
@@ -290,30 +307,12 @@ OptionValue takesEach(const std::string& kind, const TakeText& take)
 
 OptionValue takesWholeBy(const std::function<void(uint64_t)>& take, uint64_t least, uint64_t most, const std::string& kind)
 {
-	const auto check = [take, least, most](const std::string& name, const std::string& text)
-	{
-		const std::optional<uint64_t> number = numberFrom<uint64_t>(text);
-		if (!number || *number < least || *number > most)
-		{
-			refuseValue(name, text, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
-		}
-		take(*number);
-	};
-	return takesParsed(kind, check);
+	return takesWithin(take, least, most, kind, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
 }
 
 OptionValue takesNumberBy(const std::function<void(double)>& take, double least, double most, const std::string& kind)
 {
-	const auto check = [take, least, most](const std::string& name, const std::string& text)
-	{
-		const std::optional<double> number = numberFrom<double>(text);
-		if (!number || !(*number >= least && *number <= most))
-		{
-			refuseValue(name, text, "a number from " + numberText(least) + " to " + numberText(most));
-		}
-		take(*number);
-	};
-	return takesParsed(kind, check);
+	return takesWithin(take, least, most, kind, "a number from " + numberText(least) + " to " + numberText(most));
 }
 
 OptionValue takesMatrix(std::optional<glm::dmat4>& value)

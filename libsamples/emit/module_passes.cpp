@@ -358,11 +358,10 @@ void shorten(const TileFile& file, std::size_t count, const std::string& path, s
 	{
 		refuseInput(path + ": --counts", std::to_string(variants.front().count()) + " samples", std::to_string(count) + " or more");
 	}
-	if (count < variants.front().count() && !(file.recipe && file.recipe->progressive))
-	{
-		throw Error(ExitCode::invalid_input, path + ": --counts: found a tile of " + std::to_string(variants.front().count()) +
-												 " samples, expected all of them, or one made with --progressive");
-	}
+	refuseIf(count < variants.front().count() && !(file.recipe && file.recipe->progressive),
+			 path + ": --counts: found a tile of " + std::to_string(variants.front().count()) +
+				 " samples, expected all of them, or one made with --progressive",
+			 ExitCode::invalid_input);
 	for (Pattern& variant : variants)
 	{
 		if (count == variant.count())
@@ -623,11 +622,10 @@ std::string readSamples(const std::string& path, std::optional<std::size_t> coun
 	const Domain expected = domainOf(method.method);
 	const auto checkDomain = [&](Domain found)
 	{
-		if (found != expected)
-		{
-			throw Error(ExitCode::invalid_input, path + ": domain: found " + std::string(nameOf(found)) + ", expected " +
-													 std::string(nameOf(expected)) + " for " + std::string(nameOf(method.method)));
-		}
+		refuseIf(found != expected,
+				 path + ": domain: found " + std::string(nameOf(found)) + ", expected " + std::string(nameOf(expected)) + " for " +
+					 std::string(nameOf(method.method)),
+				 ExitCode::invalid_input);
 	};
 	if (PatternFile* const file = std::get_if<PatternFile>(&input))
 	{

@@ -39,11 +39,9 @@ glm::dmat4 unitProjection(const glm::dmat4& projection)
 nook_row_numbers acrossOf(const glm::dmat4& p, int row)
 {
 	const int other = 1 - row;
-	if (p[other][row] != 0.0 || p[0][3] != 0.0 || p[1][3] != 0.0 || p[row][row] == 0.0)
-	{
-		throw Error(ExitCode::unsupported,
-					"projection: found one with a skew, expected x and y of the picture to depend on x and y alone");
-	}
+	refuseIf(p[other][row] != 0.0 || p[0][3] != 0.0 || p[1][3] != 0.0 || p[row][row] == 0.0,
+			 "projection: found one with a skew, expected x and y of the picture to depend on x and y alone",
+			 ExitCode::unsupported);
 	double numbers[16];
 	std::copy_n(glm::value_ptr(p), 16, numbers);
 	return nook_row_of(numbers, row);
@@ -90,11 +88,9 @@ void fillBands(ShadeBlock& block, const ShadeSettings& settings, int height_px)
 {
 	const BandSettings& bands = settings.bands;
 	const double most_px = settings.max_radius_px > 0.0 ? settings.max_radius_px : height_px;
-	if (settings.min_radius_px > most_px)
-	{
-		throw Error(ExitCode::usage, "min-pixels: found " + numberText(settings.min_radius_px) + ", expected at most " +
-										 numberText(most_px) + ", the picture's height where nothing else is said (max-pixels)");
-	}
+	refuseIf(settings.min_radius_px > most_px, "min-pixels: found " + numberText(settings.min_radius_px) + ", expected at most " +
+												   numberText(most_px) +
+												   ", the picture's height where nothing else is said (max-pixels)");
 	block.first_band_px = narrow(bands.first_px);
 	block.second_band_px = narrow(bands.second_px);
 	block.most_px = narrow(most_px);
@@ -220,18 +216,13 @@ void fillDepth(ShadeBlock& block, const glm::dmat4& projection, const DepthForma
 	{
 		return;
 	}
-	if (p[0][2] != 0.0 || p[1][2] != 0.0)
-	{
-		throw Error(ExitCode::unsupported, "projection: found a z that depends on x or y, expected none with device depth");
-	}
+	refuseIf(p[0][2] != 0.0 || p[1][2] != 0.0, "projection: found a z that depends on x or y, expected none with device depth",
+			 ExitCode::unsupported);
 	double numbers[16];
 	std::copy_n(glm::value_ptr(p), 16, numbers);
 	nook_depth_numbers depth;
-	if (!nook_depth_of(depth, numbers, format.clip == ClipRange::zero_to_one, format.bits))
-	{
-		throw Error(ExitCode::invalid_input,
-					"projection: found a z that does not depend on depth, expected another with device depth");
-	}
+	refuseIf(!nook_depth_of(depth, numbers, format.clip == ClipRange::zero_to_one, format.bits),
+			 "projection: found a z that does not depend on depth, expected another with device depth", ExitCode::invalid_input);
 	block.depth = glm::vec4(glm::make_vec4(depth.terms));
 	block.far_end = static_cast<float>(depth.far_end);
 	block.depth_step = static_cast<float>(depth.half_step);

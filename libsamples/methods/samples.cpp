@@ -77,12 +77,9 @@ Pattern pairedPattern(const Pattern& pattern)
 	for (std::size_t i = 0; i < pattern.count(); ++i)
 	{
 		const std::size_t twin = twinOf(pattern, i);
-		if (twin == pattern.count() || (twin == i && centre.count() > 0))
-		{
-			throw Error(ExitCode::invalid_input,
-						"sample " + std::to_string(i) +
-							": found no other at the opposite side, expected a symmetric pattern (paired)");
-		}
+		refuseIf(twin == pattern.count() || (twin == i && centre.count() > 0),
+				 "sample " + std::to_string(i) + ": found no other at the opposite side, expected a symmetric pattern (paired)",
+				 ExitCode::invalid_input);
 		if (twin == i)
 		{
 			take(centre, i);

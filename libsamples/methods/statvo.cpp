@@ -194,12 +194,10 @@ void addStatVo(ShadePlan& plan, ShadePass& method, const ShadeBlock& block, cons
 	const std::int64_t width = partsOf(block.last.x - block.first.x + 1, settings.cell_px) + 1;
 	const std::int64_t height = partsOf(block.last.y - block.first.y + 1, settings.cell_px) + 1;
 	const std::int64_t bytes = width * height * kEntryBytes * (tablesOf(settings) + 2);
-	if (bytes > kMostBytes)
-	{
-		throw Error(ExitCode::unsupported, "tables: found " + std::to_string(bytes >> 20) + " MiB of " +
-											   std::to_string(settings.layers) + " layers, expected at most " +
-											   std::to_string(kMostBytes >> 20));
-	}
+	refuseIf(bytes > kMostBytes,
+			 "tables: found " + std::to_string(bytes >> 20) + " MiB of " + std::to_string(settings.layers) +
+				 " layers, expected at most " + std::to_string(kMostBytes >> 20),
+			 ExitCode::unsupported);
 	StatVoPlanner(plan, block, settings, compute).add(method);
 }
 

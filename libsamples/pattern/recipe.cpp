@@ -4,8 +4,6 @@
 #include "core/decimal.h"
 #include "core/error.h"
 
-#include <array>
-
 namespace nook
 {
 
@@ -16,14 +14,6 @@ std::span<const std::string_view> patternDomains()
 
 namespace
 {
-
-void refuseIf(bool condition, const std::string& message)
-{
-	if (condition)
-	{
-		throw Error(ExitCode::usage, message);
-	}
-}
 
 void checkRange(const char* option, double value, double least, double most, const char* range)
 {

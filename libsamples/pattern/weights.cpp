@@ -286,11 +286,10 @@ std::vector<double> equalisingPowers(Domain domain, std::span<const glm::dvec3> 
 			break;
 		}
 	}
-	if (!(residual.error < 1e-9))
-	{
-		throw Error(ExitCode::runtime, "equal cells: Newton's method stopped at a relative error of " +
-										   std::to_string(residual.error) + ", expected 1e-9; are there duplicate points?");
-	}
+	refuseIf(!(residual.error < 1e-9),
+			 "equal cells: Newton's method stopped at a relative error of " + std::to_string(residual.error) +
+				 ", expected 1e-9; are there duplicate points?",
+			 ExitCode::runtime);
 	const double mean = sumOver(powers, [&powers](double power) { return power / static_cast<double>(powers.size()); });
 	for (double& power : powers)
 	{

@@ -100,12 +100,10 @@ public:
 	{
 		int most = 0;
 		glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-		if (bytes.size() / texel > static_cast<std::size_t>(most))
-		{
-			throw Error(ExitCode::unsupported, "OpenGL: found " + std::to_string(bytes.size() / texel) +
-												   " corners, polygons or clusters of volumes, expected at most " +
-												   std::to_string(most));
-		}
+		refuseIf(bytes.size() / texel > static_cast<std::size_t>(most),
+				 "OpenGL: found " + std::to_string(bytes.size() / texel) +
+					 " corners, polygons or clusters of volumes, expected at most " + std::to_string(most),
+				 ExitCode::unsupported);
 		glBindBuffer(GL_TEXTURE_BUFFER, m_buffer);
 		glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max(bytes.size(), texel)), nullptr, GL_STATIC_DRAW);
 		glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
@@ -186,10 +184,8 @@ GlName glFrameOf(std::span<const unsigned> colours, unsigned depth)
 	{
 		glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
 	}
-	if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-	{
-		throw Error(ExitCode::unsupported, "OpenGL: found no pictures of that format to draw into, expected some");
-	}
+	refuseIf(glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE,
+			 "OpenGL: found no pictures of that format to draw into, expected some", ExitCode::unsupported);
 	return name;
 }
 
@@ -685,10 +681,8 @@ AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSet
 				  const AovGlOptions& options)
 {
 	const GlContext context(GlApi::core, drawing.gl_device);
-	if (options.storage_buffers && !context.hasCompute())
-	{
-		throw Error(ExitCode::unsupported, "OpenGL: found no storage buffers in " + context.renderer() + ", expected OpenGL 4.3");
-	}
+	refuseIf(options.storage_buffers && !context.hasCompute(),
+			 "OpenGL: found no storage buffers in " + context.renderer() + ", expected OpenGL 4.3", ExitCode::unsupported);
 	Drawer drawer(gbuffer, volumes, settings, options);
 	const bool timer = !context.isSoftware();
 	warmUp(context, drawing.repetitions, [&] { drawer.draw(timer); });

@@ -186,19 +186,14 @@ ShadeSamples shadeSamples(const std::string& path, const std::optional<int>& fra
 						  const RunSettings& run)
 {
 	const bool tile_alone = mayTakeTile(settings.method) && !path.empty();
-	if (frame && (path.empty() || !(takesPattern(settings.method) || tile_alone)))
-	{
-		throw Error(ExitCode::usage, "--frame: found without a tile, expected --pattern with one made by nook tile --frames");
-	}
+	refuseIf(frame && (path.empty() || !(takesPattern(settings.method) || tile_alone)),
+			 "--frame: found without a tile, expected --pattern with one made by nook tile --frames");
 	if (!takesPattern(settings.method) && !tile_alone)
 	{
 		return ownSamples(settings);
 	}
 	PatternTile tile = tileFor(path, settings, run);
-	if (frame && tile.frames == 1)
-	{
-		throw Error(ExitCode::invalid_input, path + ": frames: found one, expected several for --frame");
-	}
+	refuseIf(frame && tile.frames == 1, path + ": frames: found one, expected several for --frame", ExitCode::invalid_input);
 	if (settings.volume.paired)
 	{
 		for (Pattern& variant : tile.variants)

@@ -180,10 +180,8 @@ constexpr std::array<const char*, 5> kSamplers{"nook_cells", "nook_packed", "noo
 bool usesCompute(const GlContext& context, const ShadeSettings& settings)
 {
 	const TableBuilder builder = settings.statvo.builder;
-	if (builder == TableBuilder::compute && !context.hasCompute())
-	{
-		throw Error(ExitCode::unsupported, "OpenGL: found no compute shaders in " + context.renderer() + ", expected OpenGL 4.3");
-	}
+	refuseIf(builder == TableBuilder::compute && !context.hasCompute(),
+			 "OpenGL: found no compute shaders in " + context.renderer() + ", expected OpenGL 4.3", ExitCode::unsupported);
 	const bool automatic = context.hasCompute() && !context.isSoftware(); // on llvmpipe, compute shaders are five times slower
 	return builder == TableBuilder::compute || (builder == TableBuilder::automatic && automatic);
 }

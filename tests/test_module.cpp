@@ -472,7 +472,7 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 	pass.bind(kTiles[indexOf(method.method)], tile);
 	pass.bindBlock("nook_block", std::as_bytes(std::span(&block, 1)));
 	pass.draw(target);
-	return readScalar(target);
+	return readFloats(target);
 }
 
 // The kernels on the CPU, with the block of the emitted header.
@@ -583,7 +583,7 @@ TEST_CASE("module: the mean over the window is the kernel's", "[emit]")
 	pass.bind("nook_cells", cells);
 	pass.bindBlock("nook_block", std::as_bytes(std::span(&block, 1)));
 	pass.draw(target);
-	const std::vector<float> gl = readScalar(target);
+	const std::vector<float> gl = readFloats(target);
 
 	shade_kernels::Kernels kernels;
 	const std::vector<float> flat_depths = finiteDepths(gbuffer);

@@ -110,7 +110,7 @@ std::vector<float> drawn(GlPass& pass, const GlTexture& depths, const GlTexture&
 	pass.bind("nook_normals", normals);
 	pass.bindBlock("nook_block", std::as_bytes(std::span(&block, 1)));
 	pass.draw(target);
-	return readScalar(target);
+	return readFloats(target);
 }
 
 std::vector<float> computed(const GBuffer& gbuffer, const DepthFormat& format)

@@ -128,7 +128,7 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 						   "out highp float colour;\nvoid main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n\t" +
 						   kTypes[static_cast<std::size_t>(format)] + " value = " + call + ";\n\tcolour = float(nook_reads);\n}\n");
 			draw(program, picture, 0, 0);
-			const std::vector<float> reads = readScalar(picture);
+			const std::vector<float> reads = readFloats(picture);
 			int& most = (*counts)[pass.fills ? entry + "Full" : moduleCallOf(pass)];
 			most = std::max(most, static_cast<int>(*std::max_element(reads.begin(), reads.end())));
 		}
@@ -137,7 +137,7 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 		draw(program, *pictures[pass.picture], pass.level, pass.layer);
 	}
 	const GlTexture& last = *pictures[plan.passes.back().picture];
-	return last.shape().format == PictureFormat::quad ? readQuads(last) : readScalar(last);
+	return last.shape().format == PictureFormat::quad ? readFloats(last) : readFloats(last);
 }
 
 } // namespace
@@ -356,7 +356,7 @@ TEST_CASE("module: a compute shader's bindings are where its text puts them", "[
 		glMemoryBarrier(GL_ALL_BARRIER_BITS);
 		CAPTURE(static_cast<int>(method), context.renderer());
 		REQUIRE(glGetError() == GL_NO_ERROR);
-		checkSamePicture(shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility, readScalar(picture));
+		checkSamePicture(shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility, readFloats(picture));
 		glDeleteBuffers(1, &buffer);
 		glDeleteProgram(program);
 		glDeleteShader(shader);

@@ -82,7 +82,7 @@ std::vector<float> drawnBy(GlApi api, const ProbeGrid& grid, const Asked& asked)
 		pass.bind("normals", normals);
 		const GlTexture target(PictureShape{PictureFormat::scalar, kSide, kSide, 1, 1});
 		pass.draw(target);
-		values = readScalar(target);
+		values = readFloats(target);
 	}
 	glDeleteTextures(1, &probes);
 	return values;

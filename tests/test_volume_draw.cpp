@@ -319,7 +319,7 @@ TEST_CASE("volumes' frame: the shader reads depth back from a depth buffer of an
 			pass.bind("nook_depths", stored);
 			pass.bindBlock("NookVolumes", std::as_bytes(std::span(&frame.block, 1)));
 			pass.draw(read);
-			const std::vector<float> found = readScalar(read);
+			const std::vector<float> found = readFloats(read);
 			int compared = 0;
 			double worst = 0.0;
 			for (std::size_t i = 0; i < depths.size(); ++i)

@@ -48,10 +48,8 @@ Folder temporaryFolder()
 		delete path; // NOLINT: of a shared pointer
 	};
 	auto path = std::make_unique<std::string>((std::filesystem::temp_directory_path() / "nook-XXXXXX").string());
-	if (::mkdtemp(path->data()) == nullptr)
-	{
-		throw Error(ExitCode::file, *path + ": cannot be created, expected a folder for temporary files (TMPDIR)");
-	}
+	refuseIf(::mkdtemp(path->data()) == nullptr, *path + ": cannot be created, expected a folder for temporary files (TMPDIR)",
+			 ExitCode::file);
 	return {path.release(), remove};
 }
 
@@ -90,11 +88,8 @@ public:
 		const std::lock_guard lock(m_mutex);
 		const auto found = m_objects.find(handle);
 		const auto* const data = found != m_objects.end() ? std::any_cast<std::shared_ptr<Data>>(&found->second) : nullptr;
-		if (data == nullptr)
-		{
-			refuse(std::string(what) + ": found " + (handle == nullptr ? "null" : "no handle that is in use") + ", expected " +
-				   what);
-		}
+		refuseIf(data == nullptr,
+				 std::string(what) + ": found " + (handle == nullptr ? "null" : "no handle that is in use") + ", expected " + what);
 		return *data;
 	}
 	template <class Handle, class Data> void add(Handle** to, std::shared_ptr<Data> data)
@@ -126,10 +121,7 @@ Handles& handles()
 
 void require(const void* pointer, const char* what)
 {
-	if (pointer == nullptr)
-	{
-		refuse(std::string(what) + ": found null, expected a pointer");
-	}
+	refuseIf(pointer == nullptr, std::string(what) + ": found null, expected a pointer");
 }
 
 nook_status failed(nook_status status, const char* message) noexcept
@@ -205,10 +197,8 @@ public:
 			found += static_cast<int64_t>(i) < m_array.dimensions ? " " + std::to_string(count) : "";
 			expected += wanted == kAny ? " any" : " " + std::to_string(wanted);
 		}
-		if (!good)
-		{
-			refuse(m_name + ": found " + std::to_string(m_array.dimensions) + " dimensions, " + found + ", expected " + expected);
-		}
+		refuseIf(!good,
+				 m_name + ": found " + std::to_string(m_array.dimensions) + " dimensions, " + found + ", expected " + expected);
 	}
 
 	uint64_t along(std::size_t dimension) const
@@ -268,11 +258,9 @@ private:
 Image imageOf(const nook_array* array, const char* name, const char* channel, double most)
 {
 	const GivenArray given(array, name, {kAny, kAny});
-	if (given.along(0) > kMaxImageValues / given.along(1))
-	{
-		refuse(std::string(name) + ": found " + std::to_string(given.along(1)) + "x" + std::to_string(given.along(0)) +
-			   " pixels, expected at most " + std::to_string(kMaxImageValues));
-	}
+	refuseIf(given.along(0) > kMaxImageValues / given.along(1), std::string(name) + ": found " + std::to_string(given.along(1)) +
+																	"x" + std::to_string(given.along(0)) +
+																	" pixels, expected at most " + std::to_string(kMaxImageValues));
 	Image image{static_cast<int>(given.along(1)), static_cast<int>(given.along(0)), {channel}, {}, {}, {}};
 	image.values.resize(given.along(0) * given.along(1));
 	given.visit(-most, most, [&image](uint64_t item, double number) { image.values[item] = static_cast<float>(number); });
@@ -368,11 +356,9 @@ struct GivenOptions
 		for (const std::string& word : words)
 		{
 			const std::string name = word.substr(2, word.find('=') - 2);
-			if (app.get_option_no_throw("--" + name) == nullptr ||
-				std::find(kOfFiles.begin(), kOfFiles.end(), name) != kOfFiles.end())
-			{
-				refuseValue("option", name, "one that this call has");
-			}
+			refuseValueIf(app.get_option_no_throw("--" + name) == nullptr ||
+							  std::find(kOfFiles.begin(), kOfFiles.end(), name) != kOfFiles.end(),
+						  "option", name, "one that this call has");
 			all.push_back(word);
 		}
 		try
@@ -444,10 +430,8 @@ void runCalled(Verb (*add)(CLI::App& app), Prepared& prepared, const GivenOption
 	prepared.words.push_back("--json=" + facts);
 	for (const std::string& ending : options.endings)
 	{
-		if (ending.size() < 2 || ending[0] != '.' || ending.find('/') != std::string::npos)
-		{
-			refuseValue("output", ending, "the ending of a file: .json");
-		}
+		refuseValueIf(ending.size() < 2 || ending[0] != '.' || ending.find('/') != std::string::npos, "output", ending,
+					  "the ending of a file: .json");
 		prepared.words.push_back("--output=" + *folder + "/result" + ending);
 	}
 	CLI::App app;
@@ -506,10 +490,8 @@ nook_status called(Verb (*add)(CLI::App& app), const nook_options* options, nook
 			for (const std::string& word : given.words)
 			{
 				const std::string name = word.substr(2, word.find('=') - 2);
-				if (loading.get_option_no_throw("--" + name) != nullptr)
-				{
-					refuse(name + ": found with a level that is loaded, expected it where the level is");
-				}
+				refuseIf(loading.get_option_no_throw("--" + name) != nullptr,
+						 name + ": found with a level that is loaded, expected it where the level is");
 			}
 		}
 		runCalled(add, prepared, given, result);
@@ -533,12 +515,10 @@ Level levelOf(const nook_array* positions, const nook_array* triangles, const no
 	level.positions = GivenArray(positions, "positions", {kAny, 3}).vectors<glm::dvec3>(-kFarthest_m, kFarthest_m);
 	const std::size_t vertices = level.positions.size();
 	const GivenArray corners(triangles, "triangles", {kAny, 3});
-	if (!corners.isWhole() || corners.along(0) > kMaxTriangles || vertices > 3 * kMaxTriangles)
-	{
-		refuse("triangles: found " + std::to_string(corners.along(0)) + " of " + std::to_string(vertices) + " vertices" +
-			   (corners.isWhole() ? "" : " as floating-point numbers") + ", expected whole numbers, at most " +
-			   std::to_string(kMaxTriangles));
-	}
+	refuseIf(!corners.isWhole() || corners.along(0) > kMaxTriangles || vertices > 3 * kMaxTriangles,
+			 "triangles: found " + std::to_string(corners.along(0)) + " of " + std::to_string(vertices) + " vertices" +
+				 (corners.isWhole() ? "" : " as floating-point numbers") + ", expected whole numbers, at most " +
+				 std::to_string(kMaxTriangles));
 	level.triangles = corners.vectors<glm::uvec3>(0.0, static_cast<double>(vertices - 1));
 	level.normals = normals != nullptr ? GivenArray(normals, "normals", {vertices, 3}).vectors<glm::vec3>(-1e15, 1e15)
 									   : std::vector<glm::vec3>(vertices, glm::vec3(0.0F));
@@ -622,14 +602,10 @@ nook_status nook_options_file(nook_options* options, const char* name, const cha
 		require(file_name, "file_name");
 		require(bytes, "bytes");
 		const std::string file = file_name;
-		if (file.empty() || file[0] == '.' || file[0] == '-' || file.find_first_of("/,") != std::string::npos)
-		{
-			refuseValue("file_name", file, "a name without folder and comma: disk.json");
-		}
-		if (size > kMaxFileBytes)
-		{
-			refuse("size: found " + std::to_string(size) + " bytes, expected at most " + std::to_string(kMaxFileBytes));
-		}
+		refuseValueIf(file.empty() || file[0] == '.' || file[0] == '-' || file.find_first_of("/,") != std::string::npos,
+					  "file_name", file, "a name without folder and comma: disk.json");
+		refuseIf(size > kMaxFileBytes,
+				 "size: found " + std::to_string(size) + " bytes, expected at most " + std::to_string(kMaxFileBytes));
 		const Folder folder = temporaryFolder();
 		const std::string path = *folder + "/" + file;
 		writeFile(path, {static_cast<const char*>(bytes), size});
@@ -832,10 +808,8 @@ nook_status nook_run_compare(const nook_array* test, const nook_array* reference
 		{
 			GivenArray(mask, "mask", {static_cast<uint64_t>(known.height_px), static_cast<uint64_t>(known.width_px)})
 				.visit(-kMostFloat, kMostFloat, [&](uint64_t, double value) { call.counted.push_back(value != 0.0 ? 1 : 0); });
-			if (std::count(call.counted.begin(), call.counted.end(), 1) == 0)
-			{
-				throw Error(ExitCode::invalid_input, "mask: found zeros alone, expected a pixel that counts");
-			}
+			refuseIf(std::count(call.counted.begin(), call.counted.end(), 1) == 0,
+					 "mask: found zeros alone, expected a pixel that counts", ExitCode::invalid_input);
 		}
 	};
 	return called(addCompareVerb, options, result, prepare);
@@ -850,10 +824,7 @@ nook_status nook_result_array(const nook_result* result, const char* name, nook_
 		const auto data = handles().find<ResultData>(result, "result");
 		const auto found =
 			std::find_if(data->arrays.begin(), data->arrays.end(), [name](const MadeArray& made) { return made.name == name; });
-		if (found == data->arrays.end())
-		{
-			refuseValue("array", name, "one that this result has (nook_result_name)");
-		}
+		refuseValueIf(found == data->arrays.end(), "array", name, "one that this result has (nook_result_name)");
 		*array = {found->data.get(), found->type, static_cast<int32_t>(found->shape.size()), {}};
 		std::copy(found->shape.begin(), found->shape.end(), array->shape);
 	};
@@ -881,10 +852,7 @@ nook_status nook_result_file(const nook_result* result, const char* ending, cons
 		require(size, "size");
 		const auto data = handles().find<ResultData>(result, "result");
 		const auto found = data->files.find(std::string_view(ending));
-		if (found == data->files.end())
-		{
-			refuseValue("ending", ending, "one that was an \"output\" of the call");
-		}
+		refuseValueIf(found == data->files.end(), "ending", ending, "one that was an \"output\" of the call");
 		*bytes = found->second.data();
 		*size = found->second.size();
 	};

@@ -58,10 +58,7 @@ std::string depfileOf(const Outputs& outputs, const std::vector<std::string>& re
 // CLI11 hands over whatever follows; a name that begins with a dash is far more likely a forgotten value.
 void checkText(const std::string& name, const std::string& text, const std::string& kind)
 {
-	if (text.empty() || (text.size() > 1 && text[0] == '-'))
-	{
-		refuseValue(name, text, kind);
-	}
+	refuseValueIf(text.empty() || (text.size() > 1 && text[0] == '-'), name, text, kind);
 }
 
 // A condition's option as it is given, "--falloff linear", if that is one of its values; else empty.
@@ -141,6 +138,20 @@ void checkDistinct(const std::vector<std::string>& written, const std::vector<st
 	}
 }
 
+// A number within a range.
+template <class Number>
+OptionValue takesWithin(const std::function<void(Number)>& take, Number least, Number most, const std::string& kind,
+						const std::string& expected)
+{
+	const auto check = [take, least, most, expected](const std::string& name, const std::string& text)
+	{
+		const std::optional<Number> number = numberFrom<Number>(text);
+		refuseValueIf(!number || !(*number >= least && *number <= most), name, text, expected);
+		take(*number);
+	};
+	return takesParsed(kind, check);
+}
+
 } // namespace
 
 Facts verbFacts(std::string_view verb)
@@ -172,6 +183,14 @@ void refuse(const std::string& message)
 void refuseValue(const std::string& option, const std::string& found, const std::string& expected)
 {
 	refuse(option + ": found '" + found + "', expected " + expected);
+}
+
+void refuseValueIf(bool condition, const std::string& option, const std::string& found, const std::string& expected)
+{
+	if (condition)
+	{
+		refuseValue(option, found, expected);
+	}
 }
 
 OptionRules needs(const std::string& condition, const std::string& expected, const std::string& found)
@@ -252,10 +271,7 @@ OptionValue takesIndex(std::span<const std::string_view> names, const std::funct
 	const auto take = [names = std::vector(names.begin(), names.end()), choose](const std::string& option, const std::string& text)
 	{
 		const auto found = std::find(names.begin(), names.end(), text);
-		if (found == names.end())
-		{
-			refuseValue(option, text, spokenList(names));
-		}
+		refuseValueIf(found == names.end(), option, text, spokenList(names));
 		choose(static_cast<std::size_t>(found - names.begin()));
 	};
 	return takesParsed(joinedText(names, "|"), take);
@@ -290,30 +306,12 @@ OptionValue takesEach(const std::string& kind, const TakeText& take)
 
 OptionValue takesWholeBy(const std::function<void(uint64_t)>& take, uint64_t least, uint64_t most, const std::string& kind)
 {
-	const auto check = [take, least, most](const std::string& name, const std::string& text)
-	{
-		const std::optional<uint64_t> number = numberFrom<uint64_t>(text);
-		if (!number || *number < least || *number > most)
-		{
-			refuseValue(name, text, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
-		}
-		take(*number);
-	};
-	return takesParsed(kind, check);
+	return takesWithin(take, least, most, kind, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
 }
 
 OptionValue takesNumberBy(const std::function<void(double)>& take, double least, double most, const std::string& kind)
 {
-	const auto check = [take, least, most](const std::string& name, const std::string& text)
-	{
-		const std::optional<double> number = numberFrom<double>(text);
-		if (!number || !(*number >= least && *number <= most))
-		{
-			refuseValue(name, text, "a number from " + numberText(least) + " to " + numberText(most));
-		}
-		take(*number);
-	};
-	return takesParsed(kind, check);
+	return takesWithin(take, least, most, kind, "a number from " + numberText(least) + " to " + numberText(most));
 }
 
 OptionValue takesMatrix(std::optional<glm::dmat4>& value)
@@ -333,21 +331,16 @@ OptionValue takesMatrix(std::optional<glm::dmat4>& value)
 		{
 			end = std::min(text.find_first_of(between, at), text.size());
 			const std::optional<double> number = numberFrom<double>(text.substr(at, end - at));
-			if (!number || !std::isfinite(*number))
-			{
-				refuseValue(name, text.substr(at, end - at), "16 finite numbers, column by column, with commas between");
-			}
+			refuseValueIf(!number || !std::isfinite(*number), name, text.substr(at, end - at),
+						  "16 finite numbers, column by column, with commas between");
 			if (count < 16)
 			{
 				matrix[count / 4][count % 4] = *number;
 			}
 			count += 1;
 		}
-		if (count != 16)
-		{
-			refuseValue(name, std::to_string(count) + (count == 1 ? " number" : " numbers"),
-						"16 finite numbers, column by column, with commas between");
-		}
+		refuseValueIf(count != 16, name, std::to_string(count) + (count == 1 ? " number" : " numbers"),
+					  "16 finite numbers, column by column, with commas between");
 		value = matrix;
 	};
 	return takesParsed("16 NUMBERS", take);
@@ -360,10 +353,8 @@ OptionValue takesCounts(CountRange& value, int most)
 		const std::size_t dash = text.find('-');
 		const std::optional<int> first = numberFrom<int>(text.substr(0, dash));
 		const std::optional<int> last = dash == std::string::npos ? first : numberFrom<int>(text.substr(dash + 1));
-		if (!first || !last || *first < 1 || *last < *first || *last > most)
-		{
-			refuseValue(name, text, "FIRST-LAST or one number, from 1 to " + std::to_string(most));
-		}
+		refuseValueIf(!first || !last || *first < 1 || *last < *first || *last > most, name, text,
+					  "FIRST-LAST or one number, from 1 to " + std::to_string(most));
 		value = {*first, *last};
 	};
 	return takesParsed("FIRST-LAST", take);
@@ -459,10 +450,7 @@ void addRun(CLI::App& app, Outputs& outputs, bool shares)
 	const auto take = [&share = outputs.share](const std::string& name, const std::string& text)
 	{
 		share = shareOf(text);
-		if (!share)
-		{
-			refuseValue(name, text, "K/N, whole numbers with 1 <= K <= N <= " + std::to_string(kMaxShares));
-		}
+		refuseValueIf(!share, name, text, "K/N, whole numbers with 1 <= K <= N <= " + std::to_string(kMaxShares));
 	};
 	addOptions(app, {{"--share", takesParsed("K/N", take),
 					  "Computes the Kth of N shares of the work into --cache and writes no output; the same command without "
@@ -549,10 +537,7 @@ std::string spokenList(std::span<const std::string_view> names)
 
 void checkName(const std::string& name)
 {
-	if (!name.empty() && !isIdentifier(name))
-	{
-		refuseValue("--name", name, "letters, digits and single underscores, a letter first");
-	}
+	refuseValueIf(!name.empty() && !isIdentifier(name), "--name", name, "letters, digits and single underscores, a letter first");
 }
 
 void giveSamples(std::span<const Pattern> variants, std::vector<std::size_t> shape)

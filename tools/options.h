@@ -83,6 +83,7 @@ std::vector<std::string> partsOf(const std::string& list, char between = ',');
 
 // "found X, expected Y" for an option. Throws Error (usage).
 [[noreturn]] void refuseValue(const std::string& option, const std::string& found, const std::string& expected);
+void refuseValueIf(bool condition, const std::string& option, const std::string& found, const std::string& expected);
 
 // For something that needs a component that is not in this build. Throws Error (unsupported).
 [[noreturn]] void refuseWithout(const std::string& component, const std::string& what);

@@ -13,30 +13,10 @@ namespace nook
 {
 
 // Names as on the command line, in the order of the enumerators.
-template <> std::span<const std::string_view> namesOf<DepthKind>()
-{
-	static constexpr std::array<std::string_view, 3> kNames{"linear", "distance", "device"};
-	return kNames;
-}
-
-template <> std::span<const std::string_view> namesOf<ClipRange>()
-{
-	static constexpr std::array<std::string_view, 2> kNames{"minus-one-to-one", "zero-to-one"};
-	return kNames;
-}
-
-template <> std::span<const std::string_view> namesOf<NormalSpace>()
-{
-	static constexpr std::array<std::string_view, 2> kNames{"view", "world"};
-	return kNames;
-}
-
-template <> std::span<const std::string_view> namesOf<NormalRange>()
-{
-	static constexpr std::array<std::string_view, 2> kNames{"plus-minus-one", "zero-to-one"};
-	return kNames;
-}
-
+template <> inline constexpr std::array<std::string_view, 3> kNamesOf<DepthKind>{"linear", "distance", "device"};
+template <> inline constexpr std::array<std::string_view, 2> kNamesOf<ClipRange>{"minus-one-to-one", "zero-to-one"};
+template <> inline constexpr std::array<std::string_view, 2> kNamesOf<NormalSpace>{"view", "world"};
+template <> inline constexpr std::array<std::string_view, 2> kNamesOf<NormalRange>{"plus-minus-one", "zero-to-one"};
 namespace
 {
 
@@ -73,28 +53,20 @@ std::optional<std::array<Number, count>> numbersOf(const std::string& text, doub
 std::array<int, 4> viewportOf(const std::string& name, const std::string& text)
 {
 	const std::optional<std::array<int, 4>> viewport = numbersOf<int, 4>(text, 0, std::numeric_limits<int>::max());
-	if (!viewport || (*viewport)[2] < 1 || (*viewport)[3] < 1)
-	{
-		refuseValue(name, text, "X,Y,W,H in whole pixels, as in 0,0,640,360");
-	}
+	refuseValueIf(!viewport || (*viewport)[2] < 1 || (*viewport)[3] < 1, name, text, "X,Y,W,H in whole pixels, as in 0,0,640,360");
 	return *viewport;
 }
 
 void takeCamera(const std::string& name, const std::string& text, CameraOptions& options)
 {
-	if (text.empty() || text[0] == '-')
-	{
-		refuseValue(name, text, "NAME or auto:K");
-	}
+	refuseValueIf(text.empty() || text[0] == '-', name, text, "NAME or auto:K");
 	options.camera = text;
 	options.automatic = 0;
 	if (text.starts_with(kAutoViews))
 	{
 		const std::optional<int> count = numberFrom<int>(std::string_view(text).substr(kAutoViews.size()));
-		if (!count || *count < 1 || *count > kMaxAutomatic)
-		{
-			refuseValue(name, text, "auto:K with K from 1 to " + std::to_string(kMaxAutomatic));
-		}
+		refuseValueIf(!count || *count < 1 || *count > kMaxAutomatic, name, text,
+					  "auto:K with K from 1 to " + std::to_string(kMaxAutomatic));
 		options.automatic = *count;
 	}
 }
@@ -104,10 +76,7 @@ void takeCamera(const std::string& name, const std::string& text, CameraOptions&
 glm::dvec3 positionOf(const std::string& option, const std::string& text)
 {
 	const std::optional<std::array<double, 3>> numbers = numbersOf<double, 3>(text, -kFarthest_m, kFarthest_m);
-	if (!numbers)
-	{
-		refuseValue(option, text, "X,Y,Z: three numbers, each from -1e15 to 1e15");
-	}
+	refuseValueIf(!numbers, option, text, "X,Y,Z: three numbers, each from -1e15 to 1e15");
 	return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
 }
 
@@ -115,22 +84,17 @@ glm::ivec2 sizeOf(const std::string& option, const std::string& text)
 {
 	const std::optional<std::array<int, 2>> size = numbersOf<int, 2>(text, 1, kMaxSide, 'x');
 	// A G-buffer has four channels.
-	if (!size || static_cast<std::size_t>((*size)[0]) * static_cast<std::size_t>((*size)[1]) > kMaxImageValues / 4)
-	{
-		refuseValue(option, text,
-					"WxH, each from 1 to " + std::to_string(kMaxSide) + ", at most " + std::to_string(kMaxImageValues / 4) +
-						" pixels");
-	}
+	refuseValueIf(
+		!size || static_cast<std::size_t>((*size)[0]) * static_cast<std::size_t>((*size)[1]) > kMaxImageValues / 4, option, text,
+		"WxH, each from 1 to " + std::to_string(kMaxSide) + ", at most " + std::to_string(kMaxImageValues / 4) + " pixels");
 	return {(*size)[0], (*size)[1]};
 }
 
 Bounds boxOf(const std::string& option, const std::string& text)
 {
 	const std::optional<std::array<double, 6>> numbers = numbersOf<double, 6>(text, -kFarthest_m, kFarthest_m);
-	if (!numbers || (*numbers)[0] > (*numbers)[3] || (*numbers)[1] > (*numbers)[4] || (*numbers)[2] > (*numbers)[5])
-	{
-		refuseValue(option, text, "six numbers X,Y,Z,X,Y,Z, the least corner of a box first, metres");
-	}
+	refuseValueIf(!numbers || (*numbers)[0] > (*numbers)[3] || (*numbers)[1] > (*numbers)[4] || (*numbers)[2] > (*numbers)[5],
+				  option, text, "six numbers X,Y,Z,X,Y,Z, the least corner of a box first, metres");
 	return {{(*numbers)[0], (*numbers)[1], (*numbers)[2]}, {(*numbers)[3], (*numbers)[4], (*numbers)[5]}};
 }
 
@@ -139,10 +103,8 @@ OptionRow partsRow(const std::string& name, std::vector<std::string>& patterns, 
 	const auto take = [&patterns](const std::string& option, const std::string& text)
 	{
 		const std::vector<std::string> parts = partsOf(text);
-		if (parts.empty() || std::find(parts.begin(), parts.end(), "") != parts.end())
-		{
-			refuseValue(option, text, "patterns of parts, commas between them: Lamp*,material:Glass");
-		}
+		refuseValueIf(parts.empty() || std::find(parts.begin(), parts.end(), "") != parts.end(), option, text,
+					  "patterns of parts, commas between them: Lamp*,material:Glass");
 		patterns.insert(patterns.end(), parts.begin(), parts.end());
 	};
 	return {name, takesEach("PARTS", take), help, std::move(rules)};
@@ -258,11 +220,9 @@ void addGBufferImport(CLI::App& app, GBufferImport& import)
 
 void checkGBufferImport(const GBufferImport& import)
 {
-	if (import.normals_from_depth && (!import.normal_channels.empty() || import.normal_space != NormalSpace::view ||
-									  import.normal_range != NormalRange::plus_minus_one))
-	{
-		refuse("--normals from-depth: the file's normals are not read, expected no option about them");
-	}
+	refuseIf(import.normals_from_depth && (!import.normal_channels.empty() || import.normal_space != NormalSpace::view ||
+										   import.normal_range != NormalRange::plus_minus_one),
+			 "--normals from-depth: the file's normals are not read, expected no option about them");
 }
 
 OptionRow falloffUnitRow(std::optional<double>& unit_m)
@@ -273,14 +233,10 @@ OptionRow falloffUnitRow(std::optional<double>& unit_m)
 
 double falloffUnit(const std::optional<double>& unit_m, double radius_m, Falloff falloff)
 {
-	if (std::isfinite(radius_m) && radius_m > 1e9)
-	{
-		refuseValue("--radius", numberText(radius_m), "metres from 0.000001 to 1000000000, or inf");
-	}
-	if (!unit_m && falloff == Falloff::alchemy && std::isinf(radius_m))
-	{
-		refuse("--falloff-u: found none, expected metres, since the radius is without end");
-	}
+	refuseValueIf(std::isfinite(radius_m) && radius_m > 1e9, "--radius", numberText(radius_m),
+				  "metres from 0.000001 to 1000000000, or inf");
+	refuseIf(!unit_m && falloff == Falloff::alchemy && std::isinf(radius_m),
+			 "--falloff-u: found none, expected metres, since the radius is without end");
 	return unit_m.value_or(0.1 * radius_m);
 }
 
@@ -386,10 +342,7 @@ OptionRow directionsRow(int& directions, OptionRules rules)
 {
 	const auto take = [&directions](uint64_t number)
 	{
-		if (number % 32 != 0)
-		{
-			refuseValue("--directions", std::to_string(number), "a multiple of 32");
-		}
+		refuseValueIf(number % 32 != 0, "--directions", std::to_string(number), "a multiple of 32");
 		directions = static_cast<int>(number);
 	};
 	return {"--directions", takesWholeBy(take, kLeastDirections, kMostDirections),

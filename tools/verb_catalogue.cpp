@@ -34,10 +34,7 @@ std::vector<CatalogueEntry> entriesOf(const CatalogueOptions& options)
 	}
 	const std::vector<CatalogueEntry> entries =
 		catalogueEntries(*options.domain, options.counts.first, options.counts.last, options.tiles);
-	if (entries.empty())
-	{
-		refuse("--counts: the catalogue has no such entry, expected 2 or more on the sphere");
-	}
+	refuseIf(entries.empty(), "--counts: the catalogue has no such entry, expected 2 or more on the sphere");
 	return entries;
 }
 
@@ -54,10 +51,7 @@ void makeFolders(const CatalogueOptions& options, const std::vector<CatalogueEnt
 		const std::filesystem::path folder = nativePath(path).parent_path();
 		std::error_code failed;
 		folders.make(folder, failed);
-		if (failed)
-		{
-			throw Error(ExitCode::file, folder.string() + ": cannot be made: " + failed.message());
-		}
+		refuseIf(bool(failed), folder.string() + ": cannot be made: " + failed.message(), ExitCode::file);
 		checkWritable(path);
 	}
 }

@@ -19,12 +19,8 @@ namespace nook
 {
 
 // Names as on the command line, in the order of the enumerators.
-template <> std::span<const std::string_view> namesOf<ErrorMetric>()
-{
-	static constexpr std::array<std::string_view, 7> kNames{"rmse", "mae", "p95", "max", "ssim", "flip", "eq14"};
-	return kNames;
-}
-
+template <>
+inline constexpr std::array<std::string_view, 7> kNamesOf<ErrorMetric>{"rmse", "mae", "p95", "max", "ssim", "flip", "eq14"};
 namespace
 {
 
@@ -81,10 +77,7 @@ void declare(CLI::App& app, CompareOptions& options)
 
 void check(const CompareOptions& options)
 {
-	if (options.diff == "-")
-	{
-		refuseValue("--diff", "-", "a file");
-	}
+	refuseValueIf(options.diff == "-", "--diff", "-", "a file");
 	Outputs outputs = options.outputs;
 	if (!options.diff.empty())
 	{

@@ -44,13 +44,6 @@ struct EmitOptions
 	}
 };
 
-std::string targetName(GlslTarget target)
-{
-	return target == GlslTarget::wgsl ? ""
-									  : std::string(target == GlslTarget::hlsl60 ? hlslTargets().front()
-																				 : glslTargets()[static_cast<std::size_t>(target)]);
-}
-
 bool isHlsl(const EmitOptions& options)
 {
 	return options.settings.target == GlslTarget::hlsl60;
@@ -61,7 +54,7 @@ std::string languageOption(const EmitOptions& options)
 }
 std::string languageText(const EmitOptions& options)
 {
-	return " " + languageOption(options) + (options.wgsl ? "" : " " + targetName(options.settings.target));
+	return " " + languageOption(options) + (options.wgsl ? "" : " " + std::string(nameOf(options.settings.target)));
 }
 bool hasLanguage(const EmitOptions& options)
 {
@@ -176,16 +169,10 @@ std::vector<ShadeMethod> methodsOf(const std::string& list)
 	for (const std::string& name : partsOf(list))
 	{
 		const MethodRow* const row = methodNamed(name);
-		if (row == nullptr || !isModule(*row))
-		{
-			refuseValue("--methods", name,
-						"some of " + methodNames(isModule) + ", or " + methodNames(isVolumes, " or ") + " alone");
-		}
+		refuseValueIf(row == nullptr || !isModule(*row), "--methods", name,
+					  "some of " + methodNames(isModule) + ", or " + methodNames(isVolumes, " or ") + " alone");
 		const ShadeMethod method = row->method;
-		if (std::find(methods.begin(), methods.end(), method) != methods.end())
-		{
-			refuseValue("--methods", name, "every method once");
-		}
+		refuseValueIf(std::find(methods.begin(), methods.end(), method) != methods.end(), "--methods", name, "every method once");
 		methods.push_back(method);
 	}
 	return methods;
@@ -198,16 +185,11 @@ std::vector<std::size_t> countsOf(const EmitOptions& options, std::size_t method
 	for (const std::string& text : partsOf(options.counts))
 	{
 		const std::optional<std::size_t> count = numberFrom<std::size_t>(text);
-		if (!count || *count < 1 || *count > kMaxCount)
-		{
-			refuseValue("--counts", text, "whole numbers from 1 to 4096, one a method");
-		}
+		refuseValueIf(!count || *count < 1 || *count > kMaxCount, "--counts", text, "whole numbers from 1 to 4096, one a method");
 		counts.push_back(*count);
 	}
-	if (!counts.empty() && counts.size() != methods)
-	{
-		refuseValue("--counts", options.counts, "as many numbers as methods, " + std::to_string(methods));
-	}
+	refuseValueIf(!counts.empty() && counts.size() != methods, "--counts", options.counts,
+				  "as many numbers as methods, " + std::to_string(methods));
 	return counts;
 }
 
@@ -236,10 +218,7 @@ void checkLanguage(const EmitOptions& options)
 		refuseGiven(*options.app, {"--glsl"}, "with " + name + ", expected one language per run");
 		refuseGiven(*options.app, {"--textures"}, "with " + name + ", whose textures always are separate");
 	}
-	if (options.hlsl && options.wgsl)
-	{
-		refuse("--wgsl: found with --hlsl, expected one language per run");
-	}
+	refuseIf(options.hlsl && options.wgsl, "--wgsl: found with --hlsl, expected one language per run");
 	for (const std::string& path : options.outputs.files)
 	{
 		const std::string_view format = formatOf(path, kModuleFormats);
@@ -248,38 +227,27 @@ void checkLanguage(const EmitOptions& options)
 			const std::string missing(path == "-" ? "glsl" : format.substr(1));
 			refuse("--" + missing + ": missing, expected one for the ." + missing + " file");
 		}
-		if (isShader(path) && path != "-" && format.substr(1) != name.substr(2))
-		{
-			refuse(path + ": found with " + name + ", expected -o FILE." + name.substr(2));
-		}
+		refuseIf(isShader(path) && path != "-" && format.substr(1) != name.substr(2),
+				 path + ": found with " + name + ", expected -o FILE." + name.substr(2));
 	}
-	const std::string found = ": found --glsl " + targetName(settings.target);
-	if (settings.main == ModuleMain::compute && !hasCompute(settings.target))
-	{
-		refuse("--main compute" + found + ", which has no compute shaders, expected --glsl 430, vulkan or --hlsl");
-	}
-	if (settings.textures == ModuleTextures::separate && settings.target != GlslTarget::vulkan)
-	{
-		refuse("--textures separate" + found + ", expected --glsl vulkan");
-	}
+	const std::string found = ": found --glsl " + std::string(nameOf(settings.target));
+	refuseIf(settings.main == ModuleMain::compute && !hasCompute(settings.target),
+			 "--main compute" + found + ", which has no compute shaders, expected --glsl 430, vulkan or --hlsl");
+	refuseIf(settings.textures == ModuleTextures::separate && settings.target != GlslTarget::vulkan,
+			 "--textures separate" + found + ", expected --glsl vulkan");
 }
 
 // Every option that would change nothing is a mistake.
 void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, const std::vector<std::string>& patterns)
 {
-	if (std::count(patterns.begin(), patterns.end(), "") > 0)
-	{
-		refuseValue("--patterns", options.patterns, "names of files with commas between them");
-	}
+	refuseValueIf(std::count(patterns.begin(), patterns.end(), "") > 0, "--patterns", options.patterns,
+				  "names of files with commas between them");
 	checkOutputs(options.outputs, kModuleFormats, inputsOf(options, patterns));
 	const auto needed = static_cast<std::size_t>(std::count_if(methods.begin(), methods.end(), takesPattern));
 	const auto most = needed + static_cast<std::size_t>(std::count_if(methods.begin(), methods.end(), mayTakeTile));
-	if (patterns.size() != needed && patterns.size() != most)
-	{
-		refuseValue("--patterns", options.patterns,
-					"as many files as methods that take one, " + std::to_string(needed) +
-						(most > needed ? "; " + std::to_string(most) + " with those that may" : ""));
-	}
+	refuseValueIf(patterns.size() != needed && patterns.size() != most, "--patterns", options.patterns,
+				  "as many files as methods that take one, " + std::to_string(needed) +
+					  (most > needed ? "; " + std::to_string(most) + " with those that may" : ""));
 	const std::vector<std::string>& files = options.outputs.files;
 	if (const std::string& space = options.settings.header_namespace; options.given("--namespace") && !isIdentifier(space))
 	{
@@ -301,10 +269,7 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 					without);
 		for (const FeatureRow* const row : given)
 		{
-			if (!isOfHeader(row))
-			{
-				refuse(std::string(row->option) + ": found " + without);
-			}
+			refuseIf(!isOfHeader(row), std::string(row->option) + ": found " + without);
 		}
 	}
 	checkEmitFeatures(given, options.settings.shade, methods);
@@ -394,17 +359,12 @@ void emitVolumes(const EmitOptions& options, bool mask)
 	checkOutputs(options.outputs, kModuleFormats, {});
 	checkLanguage(options);
 	const GlslTarget target = options.settings.target;
-	if (!drawsVolumes(target, mask))
-	{
-		refuse(options.methods + ": found" + languageText(options) +
-			   ", which has no logic operations on render targets, expected --glsl 330, 430, vulkan or --hlsl");
-	}
+	refuseIf(!drawsVolumes(target, mask),
+			 options.methods + ": found" + languageText(options) +
+				 ", which has no logic operations on render targets, expected --glsl 330, 430, vulkan or --hlsl");
 	for (const std::string& path : options.outputs.files)
 	{
-		if (!isShader(path))
-		{
-			refuse(path + ": found no shader, expected one alone: nook_volumes_draw.h fills the block");
-		}
+		refuseIf(!isShader(path), path + ": found no shader, expected one alone: nook_volumes_draw.h fills the block");
 	}
 	std::string command = "nook emit --methods " + options.methods;
 	command += options.settings.device_depth ? " --depth device" : "";
@@ -458,10 +418,8 @@ void run(EmitOptions& options, VerbProgress&)
 	{
 		refuseGiven(*options.app, {"--tile"}, "with patterns alone, expected a tile among --patterns");
 	}
-	if (settings.normals_from_depth && !readsNormals(settings))
-	{
-		refuse("--normals from-depth: found a module that asks for no normal, expected one that does");
-	}
+	refuseIf(settings.normals_from_depth && !readsNormals(settings),
+			 "--normals from-depth: found a module that asks for no normal, expected one that does");
 	const auto contextOf = [&](bool glsl)
 	{
 		return EmitContext{emitCommand(options, patterns, glsl), NOOK_VERSION, {}, bases};

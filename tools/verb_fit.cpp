@@ -72,10 +72,8 @@ std::vector<MethodRecipe> startsOf(const FitOptions& options)
 	{
 		const MethodRow* const row = methodNamed(name);
 		const MethodRecipe* const start = row != nullptr && row->kind == MethodKind::screen ? recipeFor(all, row->method) : nullptr;
-		if (start == nullptr || recipeFor(chosen, row->method) != nullptr)
-		{
-			refuseValue("--methods", name, "some of " + fittedNames() + ", each once, with a recipe to begin with");
-		}
+		refuseValueIf(start == nullptr || recipeFor(chosen, row->method) != nullptr, "--methods", name,
+					  "some of " + fittedNames() + ", each once, with a recipe to begin with");
 		chosen.push_back(*start);
 	}
 	return chosen;

@@ -108,20 +108,16 @@ void describe(TileFile& file, const InfoOptions& options, const RunSettings& set
 		filters = file.recipe->filters;
 	}
 	const bool ema_given = isGiven(*options.app, "--ema");
-	if (ema_given && (tile.frames == 1 || filters.empty()))
-	{
-		refuse("--ema: found with a tile of one frame or without --filter, expected both");
-	}
+	refuseIf(ema_given && (tile.frames == 1 || filters.empty()),
+			 "--ema: found with a tile of one frame or without --filter, expected both");
 	if (!filters.empty())
 	{
 		const std::vector<Measure> behind =
 			measuresBehind(tile, filters, file.recipe && !ema_given ? file.recipe->ema : options.ema,
 						   options.filters.empty() ? kQuickSteps : kMaxShareSteps, settings);
-		if (behind.empty() && !options.filters.empty())
-		{
-			throw Error(ExitCode::invalid_input, options.file + ": --filter: found too many taps, frames and samples to measure, "
-																"expected fewer");
-		}
+		refuseIf(behind.empty() && !options.filters.empty(),
+				 options.file + ": --filter: found too many taps, frames and samples to measure, expected fewer",
+				 ExitCode::invalid_input);
 		if (behind.empty())
 		{
 			facts.line("behind filters: not measured, --filter asks for it");
@@ -210,10 +206,8 @@ void writeTables(const InfoOptions& options)
 	if (!options.features_of.empty())
 	{
 		const MethodRow* const row = methodNamed(options.features_of);
-		if (row == nullptr)
-		{
-			refuseValue("--options", options.features_of, "one of " + methodNames([](const MethodRow&) { return true; }));
-		}
+		refuseValueIf(row == nullptr, "--options", options.features_of,
+					  "one of " + methodNames([](const MethodRow&) { return true; }));
 		text += optionsText(*row);
 	}
 	writeFile("-", text);
@@ -251,15 +245,10 @@ void describePlain(const InfoOptions& options, const RunSettings& settings, Fact
 void run(InfoOptions& options, VerbProgress& progress)
 {
 	const bool tables = options.methods || !options.features_of.empty();
-	if (tables != options.file.empty())
-	{
-		refuse(tables ? "FILE: found with --methods or --options, expected one of them"
-					  : "FILE is required, expected what 'nook info --help' lists");
-	}
-	if (tables && !options.outputs.progress.empty())
-	{
-		refuse("--progress: found with --methods or --options, which take no time, expected FILE");
-	}
+	refuseIf(tables != options.file.empty(), tables ? "FILE: found with --methods or --options, expected one of them"
+													: "FILE is required, expected what 'nook info --help' lists");
+	refuseIf(tables && !options.outputs.progress.empty(),
+			 "--progress: found with --methods or --options, which take no time, expected FILE");
 	if (tables)
 	{
 		writeTables(options);

@@ -51,21 +51,18 @@ struct ConvertOptions
 void addCameras(Level& level, int count, const RunSettings& settings)
 {
 	const std::vector<LevelCamera> chosen = chooseCameras(Tracer(level, settings), count, settings);
-	if (chosen.size() < static_cast<std::size_t>(count))
-	{
-		throw Error(ExitCode::invalid_input, level.name + ": --cameras: found " + std::to_string(chosen.size()) +
-												 " views that show something, expected " + std::to_string(count));
-	}
+	refuseIf(chosen.size() < static_cast<std::size_t>(count),
+			 level.name + ": --cameras: found " + std::to_string(chosen.size()) + " views that show something, expected " +
+				 std::to_string(count),
+			 ExitCode::invalid_input);
 	level.cameras.insert(level.cameras.end(), chosen.begin(), chosen.end());
 }
 
 std::vector<PlacedLevel> placesOf(const ConvertOptions& options)
 {
-	if (!options.moves.empty() && options.moves.size() != options.levels.size())
-	{
-		refuse("--move: found " + std::to_string(options.moves.size()) + " for " + std::to_string(options.levels.size()) +
-			   " levels, expected one for each level, in their order");
-	}
+	refuseIf(!options.moves.empty() && options.moves.size() != options.levels.size(),
+			 "--move: found " + std::to_string(options.moves.size()) + " for " + std::to_string(options.levels.size()) +
+				 " levels, expected one for each level, in their order");
 	const auto placeOf = [&options](std::size_t i)
 	{
 		return PlacedLevel{options.levels[i], options.moves.empty() ? glm::dvec3(0.0) : options.moves[i]};
@@ -84,10 +81,7 @@ glm::uvec3 gridOfText(const std::string& name, const std::string& text)
 							: counts.size() == 3 ? glm::uvec3(counts[0], counts[1], counts[2])
 												 : glm::uvec3(0);
 	const uint64_t cells = uint64_t{grid.x} * grid.y * grid.z;
-	if (cells < 1 || cells > kMostCells)
-	{
-		refuseValue(name, text, "XxZ or XxYxZ, at most 4096 cells: 4x3 or 4x2x3");
-	}
+	refuseValueIf(cells < 1 || cells > kMostCells, name, text, "XxZ or XxYxZ, at most 4096 cells: 4x3 or 4x2x3");
 	return grid;
 }
 
@@ -200,14 +194,10 @@ void runCells(const ConvertOptions& options, VerbProgress& progress)
 
 void run(ConvertOptions& options, VerbProgress& progress)
 {
-	if (options.cells.box && glm::any(glm::greaterThanEqual(options.cells.box->least, options.cells.box->most)))
-	{
-		refuse("--cell: found a box without inside, expected one");
-	}
-	if (options.cells.given() && !options.cells.around_m)
-	{
-		refuse("--around: found none, expected metres: what rays or volumes reach at least");
-	}
+	refuseIf(options.cells.box && glm::any(glm::greaterThanEqual(options.cells.box->least, options.cells.box->most)),
+			 "--cell: found a box without inside, expected one");
+	refuseIf(options.cells.given() && !options.cells.around_m,
+			 "--around: found none, expected metres: what rays or volumes reach at least");
 	if (options.cells.given())
 	{
 		runCells(options, progress);
@@ -239,10 +229,7 @@ void declare(CLI::App& app, ConvertOptions& options)
 	CellOptions& cells = options.cells;
 	const auto take_level = [&options](const std::string& name, const std::string& text)
 	{
-		if (text.empty())
-		{
-			refuseValue(name, text, "a level's name");
-		}
+		refuseValueIf(text.empty(), name, text, "a level's name");
 		options.levels.push_back(text);
 	};
 	addOptions(app, {{"LEVEL", takesEach("LEVEL", take_level),

@@ -68,10 +68,8 @@ std::vector<std::string> splitWords(const std::vector<std::string>& words)
 	for (const std::string& word : words)
 	{
 		const std::size_t equals = word.find('=');
-		if (word.find('\n') != std::string::npos || word.find('\0') != std::string::npos)
-		{
-			refuse("the command: found a word with a new line in it, expected none");
-		}
+		refuseIf(word.find('\n') != std::string::npos || word.find('\0') != std::string::npos,
+				 "the command: found a word with a new line in it, expected none");
 		if (word.starts_with("--") && equals != std::string::npos)
 		{
 			split.insert(split.end(), {word.substr(0, equals), word.substr(equals + 1)});
@@ -142,33 +140,22 @@ struct ParsedCommand
 
 void checkForFarm(const ParsedCommand& parsed, int shares)
 {
-	if (parsed.name == "plan")
-	{
-		refuse("the command: found plan, expected a verb that makes something");
-	}
+	refuseIf(parsed.name == "plan", "the command: found plan, expected a verb that makes something");
 	for (const char* option : {"--share", "--cache", "--depfile", "--progress"})
 	{
-		if (!parsed.values(option).empty())
-		{
-			refuse(std::string(option) + ": found in the command, expected none: the plan has its own");
-		}
+		refuseIf(!parsed.values(option).empty(),
+				 std::string(option) + ": found in the command, expected none: the plan has its own");
 	}
-	if (shares > 1 && !parsed.has("--share"))
-	{
-		throw Error(ExitCode::unsupported, "--shares: found " + std::to_string(shares) + " of nook " + parsed.name +
-											   ", expected 1, since that verb has no --share");
-	}
+	refuseIf(shares > 1 && !parsed.has("--share"),
+			 "--shares: found " + std::to_string(shares) + " of nook " + parsed.name +
+				 ", expected 1, since that verb has no --share",
+			 ExitCode::unsupported);
 	std::vector<std::string> written = parsed.values("-o");
 	const std::vector<std::string> json = parsed.values("--json");
 	written.insert(written.end(), json.begin(), json.end());
-	if (written.empty())
-	{
-		refuse("the command: found no -o FILE and no --json FILE, expected something to write");
-	}
-	if (std::find(written.begin(), written.end(), "-") != written.end())
-	{
-		refuse("-: found standard output in the command, expected files");
-	}
+	refuseIf(written.empty(), "the command: found no -o FILE and no --json FILE, expected something to write");
+	refuseIf(std::find(written.begin(), written.end(), "-") != written.end(),
+			 "-: found standard output in the command, expected files");
 }
 
 // The data window of an EXR file's header (OpenEXR's "Technical Introduction": attributes are name, type, size, value).
@@ -269,11 +256,9 @@ void checkInputs(const ParsedCommand& parsed, const std::string& folder, const P
 		for (const std::string& name : parsed.values(option))
 		{
 			std::error_code failed;
-			if (!name.starts_with(kBuiltinPrefix) && planned.count(plainPath(name)) == 0 &&
-				!fs::is_regular_file(placed(folder, name), failed))
-			{
-				throw Error(ExitCode::file, name + ": cannot be read: found no such file, expected what the command reads");
-			}
+			refuseIf(!name.starts_with(kBuiltinPrefix) && planned.count(plainPath(name)) == 0 &&
+						 !fs::is_regular_file(placed(folder, name), failed),
+					 name + ": cannot be read: found no such file, expected what the command reads", ExitCode::file);
 		}
 	}
 }
@@ -365,12 +350,9 @@ Plan planOfLevels(const PlanOptions& options)
 	{
 		try
 		{
-			if (!isPlainName(item.name))
-			{
-				throw Error(ExitCode::invalid_input,
-							"found that name of a job, expected letters, digits, '.', '_' and '-', a letter or "
-							"digit first, at most 48");
-			}
+			refuseIf(!isPlainName(item.name),
+					 "found that name of a job, expected letters, digits, '.', '_' and '-', a letter or digit first, at most 48",
+					 ExitCode::invalid_input);
 			commands.push_back(planCommandOf(item.words, folder, item, pixels));
 		}
 		catch (const Error& error) // the list is a file: an error in it is one of input
@@ -456,10 +438,7 @@ void writePlan(const Plan& plan, const std::string& folder)
 	}
 	std::error_code failed;
 	fs::create_directories(nativePath(folder), failed);
-	if (failed)
-	{
-		throw Error(ExitCode::file, folder + ": cannot be made: " + failed.message());
-	}
+	refuseIf(bool(failed), folder + ": cannot be made: " + failed.message(), ExitCode::file);
 	OutputSet files;
 	for (const PlanFile& one : planFiles(plan))
 	{
@@ -492,20 +471,14 @@ void checkForm(const PlanOptions& options)
 {
 	for (const CLI::Option* option : options.app->get_options())
 	{
-		if (!options.status.empty() && option->count() > 0 && option->get_name() != "--status" && option->get_name() != "--json")
-		{
-			refuse("--status: found with " + option->get_name() + ", expected it alone, or with --json");
-		}
+		refuseIf(!options.status.empty() && option->count() > 0 && option->get_name() != "--status" &&
+					 option->get_name() != "--json",
+				 "--status: found with " + option->get_name() + ", expected it alone, or with --json");
 	}
-	if (options.status.empty() && options.words.empty())
-	{
-		refuse("the command: found none, expected nook plan OPTIONS -- VERB ARGUMENTS, nook plan OPTIONS "
-			   "LEVELS.json, or --status DIR");
-	}
-	if (options.status.empty() && options.folder.empty())
-	{
-		refuse("-o: found none, expected a folder for the plan");
-	}
+	refuseIf(
+		options.status.empty() && options.words.empty(),
+		"the command: found none, expected nook plan OPTIONS -- VERB ARGUMENTS, nook plan OPTIONS LEVELS.json, or --status DIR");
+	refuseIf(options.status.empty() && options.folder.empty(), "-o: found none, expected a folder for the plan");
 	if (!options.outputs.json.empty())
 	{
 		checkWritable(options.outputs.json);
@@ -521,10 +494,8 @@ void run(PlanOptions& options, VerbProgress&)
 		return;
 	}
 	const bool list = options.words.size() == 1 && options.words.front().ends_with(".json");
-	if (list && (options.shares > 1 || options.minutes > 0 || options.mebibytes > 0))
-	{
-		refuse("--shares, --minutes, --memory: found with a list of levels, expected them in its steps");
-	}
+	refuseIf(list && (options.shares > 1 || options.minutes > 0 || options.mebibytes > 0),
+			 "--shares, --minutes, --memory: found with a list of levels, expected them in its steps");
 	const Plan plan = list ? planOfLevels(options) : planOfCommand(options);
 	const std::string folder = list ? options.folder + "/plan" : options.folder;
 	Facts summary = verbFacts("plan");

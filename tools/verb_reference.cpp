@@ -92,27 +92,17 @@ void settle(ReferenceOptions& options)
 {
 	ReferenceSettings& settings = options.settings;
 	const bool volume = !isByRays(settings.measure);
-	if (options.gbuffer.empty() == options.points.empty())
-	{
-		refuse("reference: found " + std::string(options.gbuffer.empty() ? "no" : "two") +
-			   " lists of points, expected --gbuffer FILE.exr or --points FILE.csv");
-	}
-	if (std::isinf(settings.radius_m) && (volume || settings.falloff == Falloff::linear))
-	{
-		refuse("--radius: found 'inf', expected metres, since what is measured is a share of it");
-	}
-	if (!options.points.empty() && (fromDepth(settings) || settings.measure == ReferenceMeasure::box))
-	{
-		refuse("--points: found with a measure that needs a camera, expected --gbuffer FILE.exr");
-	}
-	if (options.level.empty() && !fromDepth(settings))
-	{
-		refuse("LEVEL: found none, expected a level, or --from depth with --measure sphere, hemisphere or box");
-	}
-	if (!options.level.empty() && fromDepth(settings))
-	{
-		refuse("LEVEL: found with --from depth, expected none, since the depth buffer alone decides");
-	}
+	refuseIf(options.gbuffer.empty() == options.points.empty(),
+			 "reference: found " + std::string(options.gbuffer.empty() ? "no" : "two") +
+				 " lists of points, expected --gbuffer FILE.exr or --points FILE.csv");
+	refuseIf(std::isinf(settings.radius_m) && (volume || settings.falloff == Falloff::linear),
+			 "--radius: found 'inf', expected metres, since what is measured is a share of it");
+	refuseIf(!options.points.empty() && (fromDepth(settings) || settings.measure == ReferenceMeasure::box),
+			 "--points: found with a measure that needs a camera, expected --gbuffer FILE.exr");
+	refuseIf(options.level.empty() && !fromDepth(settings),
+			 "LEVEL: found none, expected a level, or --from depth with --measure sphere, hemisphere or box");
+	refuseIf(!options.level.empty() && fromDepth(settings),
+			 "LEVEL: found with --from depth, expected none, since the depth buffer alone decides");
 	settings.falloff_u_m = falloffUnit(options.falloff_u_m, settings.radius_m, settings.falloff);
 	settings.rays = options.rays.value_or(settings.max_error > 0.0 ? 4096 : settings.rays);
 	checkGBufferImport(options.import);

@@ -89,16 +89,11 @@ void checkJoin(const ErrorOptions& options)
 {
 	for (const CLI::Option* const option : options.of_measuring)
 	{
-		if (option->count() > 0)
-		{
-			refuse(option->get_name() + ": found with --join, which measures nothing, expected one of them");
-		}
+		refuseIf(option->count() > 0, option->get_name() + ": found with --join, which measures nothing, expected one of them");
 	}
-	if (!options.settings.levels.empty() || !options.outputs.json.empty())
-	{
-		refuse(std::string(options.settings.levels.empty() ? "--json" : "LEVEL") +
-			   ": found with --join, which measures nothing, expected -o FILE.html alone");
-	}
+	refuseIf(!options.settings.levels.empty() || !options.outputs.json.empty(),
+			 std::string(options.settings.levels.empty() ? "--json" : "LEVEL") +
+				 ": found with --join, which measures nothing, expected -o FILE.html alone");
 }
 
 void settle(ErrorOptions& options)
@@ -109,17 +104,12 @@ void settle(ErrorOptions& options)
 		checkJoin(options);
 		return;
 	}
-	if (settings.levels.empty())
-	{
-		refuse("LEVEL: found none, expected a level, or --join FILE.json");
-	}
+	refuseIf(settings.levels.empty(), "LEVEL: found none, expected a level, or --join FILE.json");
 	settings.methods = partsOf(options.methods);
 	for (const std::string& method : settings.methods)
 	{
-		if (method != "rays" && assetNamed(method) == nullptr && methodNamed(method) == nullptr)
-		{
-			refuseValue("--methods", method, "some of " + measuredNames());
-		}
+		refuseValueIf(method != "rays" && assetNamed(method) == nullptr && methodNamed(method) == nullptr, "--methods", method,
+					  "some of " + measuredNames());
 	}
 	const bool sized = isGiven(*options.app, "--size");
 	if (options.quick)
@@ -137,10 +127,7 @@ void settle(ErrorOptions& options)
 	settings.camera = options.camera.automatic > 0 ? "" : options.camera.camera;
 	settings.automatic = options.camera.automatic;
 	settings.version = NOOK_VERSION;
-	if (settings.shifts == 1)
-	{
-		refuseValue("--shifts", "1", "0 (not measured), or at least 2: one picture does not flicker");
-	}
+	refuseValueIf(settings.shifts == 1, "--shifts", "1", "0 (not measured), or at least 2: one picture does not flicker");
 }
 
 void writePages(const ErrorOptions& options, std::span<const ErrorReport> reports, const std::string& json,
@@ -207,23 +194,16 @@ void measure(const ErrorOptions& options, VerbProgress& progress)
 			std::fprintf(stderr, "nook: warning: baseline: %s: found nothing of it in this run\n", oneLine(missing).c_str());
 		}
 		grown = regressionText(result);
-		if (failures.empty() && result.compared == 0)
-		{
-			throw Error(ExitCode::invalid_input,
-						"--baseline: found nothing in " + options.baseline +
-							" that was measured here, expected levels, cameras and candidates of this run");
-		}
-		if (failures.empty() && !grown.empty())
-		{
-			throw Error(ExitCode::difference, grown);
-		}
+		refuseIf(failures.empty() && result.compared == 0,
+				 "--baseline: found nothing in " + options.baseline +
+					 " that was measured here, expected levels, cameras and candidates of this run",
+				 ExitCode::invalid_input);
+		refuseIf(failures.empty() && !grown.empty(), grown, ExitCode::difference);
 	}
-	if (!failures.empty())
-	{
-		throw Error(ExitCode::runtime,
-					"report: found " + std::to_string(failures.size()) + " of " + std::to_string(report.levels.size()) +
-						" levels that failed, expected none: " + joinedText(failures, "; ") + (grown.empty() ? "" : "; " + grown));
-	}
+	refuseIf(!failures.empty(),
+			 "report: found " + std::to_string(failures.size()) + " of " + std::to_string(report.levels.size()) +
+				 " levels that failed, expected none: " + joinedText(failures, "; ") + (grown.empty() ? "" : "; " + grown),
+			 ExitCode::runtime);
 }
 
 void declareReport(CLI::App& app, ErrorOptions& options)

@@ -24,10 +24,7 @@ struct TimesOptions
 double radiusOf(const std::string& name, const std::string& text)
 {
 	const double radius_px = numberFrom<double>(text).value_or(0.0);
-	if (!(radius_px >= 1.0 && radius_px <= 65536.0))
-	{
-		refuseValue(name, text, "a number from 1 to 65536");
-	}
+	refuseValueIf(!(radius_px >= 1.0 && radius_px <= 65536.0), name, text, "a number from 1 to 65536");
 	return radius_px;
 }
 
@@ -142,15 +139,11 @@ void runTimes(TimesOptions& options, VerbProgress& progress)
 	{
 		writeFile("-", facts.lines());
 	}
-	if (!failure.empty())
-	{
-		throw Error(ExitCode::runtime, failure);
-	}
-	if (!unlike.empty())
-	{
-		throw Error(ExitCode::difference, unlike + ": found more than " + numberText(100.0 * kUnlikeShare) +
-											  " % of pixels that differ from the CPU by more than 1/255, expected fewer");
-	}
+	refuseIf(!failure.empty(), failure, ExitCode::runtime);
+	refuseIf(!unlike.empty(),
+			 unlike + ": found more than " + numberText(100.0 * kUnlikeShare) +
+				 " % of pixels that differ from the CPU by more than 1/255, expected fewer",
+			 ExitCode::difference);
 }
 
 } // namespace

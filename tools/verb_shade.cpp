@@ -158,7 +158,7 @@ OptionRow debugRow(ShadeSettings& settings)
 	rules.excludes.push_back({"--volumes", "one of them", "with --volumes" + nothing});
 	rules.excludes.push_back({"--filter or --taps", "one of them, since views are drawn before any filter"});
 	return {
-		"--debug", takesChoice(debugNames(), settings.debug),
+		"--debug", takesChoice(namesOf<DebugView>(), settings.debug),
 		"Draws what happens instead of visibility, before any filter, 0 to 1: edges, where a filter finds another surface beside "
 		"a pixel; lod, the mean level of coarser depths that samples read, of all; layers, those that StatVO looks at, of all; "
 		"samples, those taken, of all; noise, the standard deviation over all variants of the window",
@@ -228,27 +228,18 @@ void checkAlone(const ShadeOptions& options, const AssetKind& kind)
 {
 	const ComposeSettings& compose = options.compose;
 	const std::string method = "--method " + std::string(kind.name);
-	if (compose.bake.empty())
-	{
-		refuse(std::string(kind.option) + ": found none with " + method + ", expected a file of nook bake");
-	}
-	if (compose.gl || options.timing || options.resolution != 0)
-	{
-		refuse(std::string(compose.gl       ? "--device"
-						   : options.timing ? "--timing"
-											: "--resolution") +
-			   ": found with " + method + ", which draws no pass, expected none");
-	}
+	refuseIf(compose.bake.empty(), std::string(kind.option) + ": found none with " + method + ", expected a file of nook bake");
+	const std::string other = compose.gl ? "--device" : options.timing ? "--timing" : "--resolution";
+	refuseIf(compose.gl || options.timing || options.resolution != 0,
+			 other + ": found with " + method + ", which draws no pass, expected none");
 }
 
 void checkResolution(const ShadeOptions& options)
 {
 	const bool screen = options.compose.screen;
-	if (screen ? options.resolution > 1 : options.resolution == 1)
-	{
-		refuse("--resolution: found " + std::string(kResolutions[options.resolution]) + " with --method " + nameOfMethod(options) +
-			   ", expected " + (screen ? "full or half" : "full, third or fifth"));
-	}
+	refuseIf(screen ? options.resolution > 1 : options.resolution == 1,
+			 "--resolution: found " + std::string(kResolutions[options.resolution]) + " with --method " + nameOfMethod(options) +
+				 ", expected " + (screen ? "full or half" : "full, third or fifth"));
 }
 
 // Refuses options that do not go with the screen-space method.
@@ -258,31 +249,20 @@ void checkScreen(const ShadeOptions& options)
 	const ShadeSettings& settings = compose.shade;
 	const GivenFeatures given = givenFeatures(*options.app, kInShade);
 	checkShadeFeatures(given, settings);
-	if (settings.slices.bent && (!compose.volumes.empty() || !compose.bake.empty() || settings.debug))
-	{
-		refuse(std::string("--bent: found with ") +
-			   (!compose.volumes.empty() ? "--volumes"
-				: !compose.bake.empty()  ? "--bake"
-										 : "--debug") +
-			   ", which has none, expected one of them");
-	}
-	if (settings.max_radius_px > 0.0 && settings.min_radius_px > settings.max_radius_px)
-	{
-		refuseValue("--min-pixels", numberText(settings.min_radius_px), "at most --max-pixels");
-	}
+	const std::string with = !compose.volumes.empty() ? "--volumes" : !compose.bake.empty() ? "--bake" : "--debug";
+	refuseIf(settings.slices.bent && (!compose.volumes.empty() || !compose.bake.empty() || settings.debug),
+			 "--bent: found with " + with + ", which has none, expected one of them");
+	refuseValueIf(settings.max_radius_px > 0.0 && settings.min_radius_px > settings.max_radius_px, "--min-pixels",
+				  numberText(settings.min_radius_px), "at most --max-pixels");
 	checkDebug(settings);
-	if (!compose.pattern.empty() && !takesPattern(settings.method) && !mayTakeTile(settings.method))
-	{
-		refuse("--pattern: found with --method " + nameOfMethod(options) + ", whose samples are its own, expected none");
-	}
+	refuseIf(!compose.pattern.empty() && !takesPattern(settings.method) && !mayTakeTile(settings.method),
+			 "--pattern: found with --method " + nameOfMethod(options) + ", whose samples are its own, expected none");
 	if (!compose.pattern.empty() && mayTakeTile(settings.method))
 	{
 		refuseSlicesWithTile(given);
 	}
-	if (settings.statvo.builder == TableBuilder::compute && !compose.gl)
-	{
-		refuse("--tables-by: found compute with --device cpu, expected --device gl");
-	}
+	refuseIf(settings.statvo.builder == TableBuilder::compute && !compose.gl,
+			 "--tables-by: found compute with --device cpu, expected --device gl");
 }
 
 // The recipe, the filter that goes with the method, how often volumes are drawn.
@@ -337,10 +317,7 @@ void check(const ShadeOptions& options)
 	{
 		checkScreen(options);
 	}
-	if (compose.gl && options.outputs.threads > 0)
-	{
-		refuse("--threads: found with --device gl, expected --device cpu");
-	}
+	refuseIf(compose.gl && options.outputs.threads > 0, "--threads: found with --device gl, expected --device cpu");
 	checkGBufferImport(options.import);
 	std::vector<std::string> inputs = filesOf(options);
 	inputs.insert(inputs.end(), {compose.bake, compose.fixed});
@@ -349,10 +326,8 @@ void check(const ShadeOptions& options)
 	const bool alone = compose.screen && compose.volumes.empty() && compose.bake.empty() && !compose.shade.debug;
 	for (const std::string& path : options.outputs.files)
 	{
-		if (!alone && formatOf(path, kShadeFormats) == ".json")
-		{
-			refuse(path + ": found with volumes, a bake or --debug, expected a screen-space method alone, whose passes it lists");
-		}
+		refuseIf(!alone && formatOf(path, kShadeFormats) == ".json",
+				 path + ": found with volumes, a bake or --debug, expected a screen-space method alone, whose passes it lists");
 	}
 }
 

@@ -77,11 +77,9 @@ PatternFile baseOf(const TileOptions& options)
 void run(TileOptions& options, VerbProgress& progress)
 {
 	checkName(options.name);
-	if (options.slice_domain.has_value() == !options.pattern.empty())
-	{
-		refuse(std::string("--pattern: ") + (options.slice_domain ? "found with" : "missing without") +
-			   " --domain slice, expected one of them");
-	}
+	refuseIf(options.slice_domain.has_value() == !options.pattern.empty(),
+			 std::string("--pattern: ") + (options.slice_domain ? "found with" : "missing without") +
+				 " --domain slice, expected one of them");
 	std::vector<std::string> inputs = filterFiles(options.filters);
 	if (!options.pattern.empty())
 	{

@@ -131,10 +131,7 @@ void checkPlaces(TuneOptions& options)
 		checkFiles(options, {(folder / kPage).string()});
 		return;
 	}
-	if (fs::exists(folder))
-	{
-		throw Error(ExitCode::file, options.folder + ": found a file, expected a folder or nothing");
-	}
+	refuseIf(fs::exists(folder), options.folder + ": found a file, expected a folder or nothing", ExitCode::file);
 	checkWritable(options.folder);
 	checkFiles(options, {});
 }
@@ -147,15 +144,10 @@ std::vector<std::string> searchedMethods(const TuneOptions& options)
 	for (const std::string& method : methods)
 	{
 		const MethodRow* const row = methodNamed(method);
-		if (row != nullptr && !drawsVolumes(target, row->masks))
-		{
-			refuse("--glsl: found " + std::string(glslTargets()[static_cast<std::size_t>(target)]) + " with " + method +
-				   ", expected 330, 430 or vulkan");
-		}
-		if (row != nullptr ? !row->emitted : assetNamed(method) == nullptr)
-		{
-			refuseValue("--methods", method, "some of " + searchedNames());
-		}
+		refuseIf(row != nullptr && !drawsVolumes(target, row->masks),
+				 "--glsl: found " + std::string(nameOf(target)) + " with " + method + ", expected 330, 430 or vulkan");
+		refuseValueIf(row != nullptr ? !row->emitted : assetNamed(method) == nullptr, "--methods", method,
+					  "some of " + searchedNames());
 	}
 	if (!options.methods.empty() || drawsVolumes(target, true))
 	{
@@ -169,10 +161,8 @@ void check(TuneOptions& options)
 {
 	TuneSettings& settings = options.settings;
 	const bool bounded = settings.goal.max_error.has_value();
-	if (bounded == !options.budget.empty())
-	{
-		refuse(std::string("--budget, --max-error: found ") + (bounded ? "both" : "neither") + ", expected one of them");
-	}
+	refuseIf(bounded == !options.budget.empty(),
+			 std::string("--budget, --max-error: found ") + (bounded ? "both" : "neither") + ", expected one of them");
 	if (!bounded)
 	{
 		settings.goal.budget_s = secondsOf(options.budget);
@@ -211,10 +201,7 @@ void write(const TuneOptions& options, const TuneReport& report, const TuneText&
 	{
 		std::error_code failed;
 		folders.make(options.folder, failed);
-		if (failed)
-		{
-			throw Error(ExitCode::file, options.folder + ": " + failed.message());
-		}
+		refuseIf(bool(failed), options.folder + ": " + failed.message(), ExitCode::file);
 		const std::filesystem::path folder(options.folder);
 		std::vector<std::string> paths{(folder / kPage).string()};
 		files.add(paths.front(), tuneHtml(report, text));
@@ -256,11 +243,9 @@ void run(TuneOptions& options, VerbProgress& progress)
 	}
 	for (const TuneLevel& level : report.levels)
 	{
-		if (!level.failed.empty())
-		{
-			throw Error(ExitCode::runtime,
-						level.given + ": found a level that cannot be measured, expected one that can: " + level.failed);
-		}
+		refuseIf(!level.failed.empty(),
+				 level.given + ": found a level that cannot be measured, expected one that can: " + level.failed,
+				 ExitCode::runtime);
 	}
 }
 

@@ -43,10 +43,8 @@ double shareOfText(const std::string& option, const std::string& text, bool whol
 	const std::size_t slash = text.find('/');
 	const double whole = slash == std::string::npos ? 1.0 : numberFrom<double>(text.substr(slash + 1)).value_or(0.0);
 	const double share = numberFrom<double>(text.substr(0, slash)).value_or(0.0) / whole;
-	if (!(whole > 0.0 && share > 0.0 && (share < 1.0 || (whole_too && share <= 1.0))))
-	{
-		refuseValue(option, text, std::string("a share above 0, ") + (whole_too ? "at most" : "below") + " 1: 0.002 or 1/512");
-	}
+	refuseValueIf(!(whole > 0.0 && share > 0.0 && (share < 1.0 || (whole_too && share <= 1.0))), option, text,
+				  std::string("a share above 0, ") + (whole_too ? "at most" : "below") + " 1: 0.002 or 1/512");
 	return share;
 }
 double shareUpToOne(const std::string& option, const std::string& text)
@@ -58,10 +56,7 @@ double shareUpToOne(const std::string& option, const std::string& text)
 void takeExtent(const std::string& option, const std::string& text, OccluderSettings& settings)
 {
 	const double extent = numberFrom<double>(text).value_or(0.0);
-	if (text != "none" && !(extent >= 0.1 && extent <= 1e6))
-	{
-		refuseValue(option, text, "0.1 or more, at most 1e6, or none");
-	}
+	refuseValueIf(text != "none" && !(extent >= 0.1 && extent <= 1e6), option, text, "0.1 or more, at most 1e6, or none");
 	settings.extent = extent;
 	settings.extent_always = true;
 }
@@ -85,10 +80,7 @@ void takeDetail(const std::string& option, const std::string& text, VolumeSettin
 double flatOf(const std::string& option, const std::string& text)
 {
 	const double flat = numberFrom<double>(text).value_or(0.0);
-	if (!(flat >= 1e-6 && flat <= 0.05))
-	{
-		refuseValue(option, text, "a share from 1e-6 to 0.05");
-	}
+	refuseValueIf(!(flat >= 1e-6 && flat <= 0.05), option, text, "a share from 1e-6 to 0.05");
 	return flat;
 }
 

@@ -16,38 +16,30 @@ namespace
 constexpr int kFirstTile = 4;
 constexpr int kLastTile = 16;
 
-enum class Shape
-{
-	free,
-	centred,
-	symmetric,
-};
-
-std::vector<Shape> shapesOf(Domain domain)
+std::vector<Variant> variantsOf(Domain domain)
 {
 	switch (domain)
 	{
-	case Domain::disk: return {Shape::free, Shape::centred, Shape::symmetric};
-	case Domain::ball: return {Shape::free, Shape::symmetric};
+	case Domain::disk: return {Variant::free, Variant::centred, Variant::symmetric};
+	case Domain::ball: return {Variant::free, Variant::symmetric};
 	case Domain::sphere:
 	case Domain::hemisphere:
 	case Domain::slice: break;
 	}
-	return {Shape::free};
+	return {Variant::free};
 }
 
-CatalogueEntry entryOf(Domain domain, Shape shape, int count)
+CatalogueEntry entryOf(Domain domain, Variant variant, int count)
 {
 	CatalogueEntry entry;
 	entry.recipe.domain = domain;
 	entry.recipe.count = count;
-	entry.recipe.centre = shape == Shape::centred;
-	entry.recipe.symmetric = shape == Shape::symmetric;
+	entry.recipe.centre = variant == Variant::centred;
+	entry.recipe.symmetric = variant == Variant::symmetric;
 	const std::string name(nameOf(domain));
 	const std::string number = std::to_string(count);
 	const std::string stem = name + "/" + name + "_" + std::string(3 - std::min<std::size_t>(3, number.size()), '0') + number;
-	const char* const suffix = shape == Shape::centred ? "_centred" : shape == Shape::symmetric ? "_symmetric" : "";
-	entry.path = stem + suffix + ".json";
+	entry.path = stem + (variant == Variant::free ? "" : "_" + std::string(nameOf(variant))) + ".json";
 	return entry;
 }
 
@@ -81,12 +73,12 @@ std::vector<CatalogueEntry> catalogueEntries(Domain domain, int first, int last,
 {
 	std::vector<CatalogueEntry> entries;
 	const int least = domain == Domain::sphere ? 2 : 1;
-	for (const Shape shape : shapesOf(domain))
+	for (const Variant variant : variantsOf(domain))
 	{
 		for (int count = std::max(first, least); count <= std::min(last, kMaxCatalogueCount); ++count)
 		{
-			CatalogueEntry entry = entryOf(domain, shape, count);
-			if (tiles && domain == Domain::disk && shape == Shape::free && count >= kFirstTile && count <= kLastTile)
+			CatalogueEntry entry = entryOf(domain, variant, count);
+			if (tiles && domain == Domain::disk && variant == Variant::free && count >= kFirstTile && count <= kLastTile)
 			{
 				entry.tile_path = entry.path.substr(0, entry.path.rfind('.')) + "_tile4.json";
 			}

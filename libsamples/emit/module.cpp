@@ -17,9 +17,6 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 4> kTargets{"330", "430", "es300", "vulkan"};
-constexpr std::array<std::string_view, 1> kHlslTargets{"60"};
-
 constexpr const char* kLinear = "nookLinear"; // converts device depth
 constexpr const char* kNormal = "nookNormal";
 constexpr const char* kNormalFromDepth = "nookNormalFromDepth";
@@ -474,6 +471,45 @@ std::string withWholeComparisons(const std::string& code, const std::set<std::st
 	return text + code.substr(done);
 }
 
+// GLSL declarations and functions in the kernels' subset as HLSL: names of types and functions, words that HLSL reserves, and
+// comparisons of vectors, which return vectors there.
+std::string toHlsl(const std::string& module)
+{
+	static const std::regex head(R"(\n[iu]?vec[234] nook\w+\()");
+	std::set<std::string> functions;
+	for (Matches it(module.begin(), module.end(), head), end; it != end; ++it)
+	{
+		addVectors(it->str(), functions);
+	}
+	std::string text;
+	for (std::size_t at = 0; at < module.size();) // function by function, since names are local to each
+	{
+		const std::size_t end = std::min(module.find("\n}\n", at), module.size() - 3) + 3;
+		const std::string code = module.substr(at, end - at);
+		std::set<std::string> vectors = functions;
+		addVectors(code, vectors);
+		text += withWholeComparisons(code, vectors);
+		at = end;
+	}
+	text = renamed(text, {{"bitCount", "countbits"},
+						  {"floatBitsToUint", "asuint"},
+						  {"uintBitsToFloat", "asfloat"},
+						  {"mat4", "float4x4"},
+						  {"line", "one_line"}, // reserved, as is `point`
+						  {"point", "one_point"}});
+	for (const auto& [pattern, by] : {std::pair{R"(\btexelFetch\((\w+), (.*), 0\))", "$1.Load(ivec3($2, 0))"},
+									  std::pair{R"(\bconst (\w+ \w+\[\d+\]) = \w+\[\d+\]\(([^;]*)\);)", "static const $1 = {$2};"},
+									  std::pair{R"(\bnook\.clip \* ([^;]+);)", "mul(nook.clip, $1);"}})
+	{
+		text = std::regex_replace(text, std::regex(pattern), by);
+	}
+	for (const auto& [type, name] : {std::pair{"ivec", "int"}, std::pair{"uvec", "uint"}, std::pair{"vec", "float"}})
+	{
+		text = std::regex_replace(text, std::regex(std::string(R"(\b)") + type + R"(([234])\b)"), std::string(name) + "$1");
+	}
+	return text;
+}
+
 // $1 to $4: the stages, corners and polygons, the clusters, the draw calls.
 constexpr const char* kVolumesHead = R"(//
 // Draws the static ambient occlusion volumes of a file that `nook volumes` wrote over the depth and normals of a frame: visibility of
@@ -542,16 +578,6 @@ std::string volumesHead(const AovTextSettings& settings)
 }
 
 } // namespace
-
-std::span<const std::string_view> glslTargets()
-{
-	return kTargets;
-}
-
-std::span<const std::string_view> hlslTargets()
-{
-	return kHlslTargets;
-}
 
 bool hasCompute(GlslTarget target)
 {
@@ -655,43 +681,6 @@ std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& contex
 							 (whole ? mainText(settings) : "\n#endif // " + guard + "\n");
 	return (whole ? kVersionLines[static_cast<std::size_t>(settings.target)] : "") + head +
 		   (isHlsl(settings) ? toHlsl(text) : text);
-}
-
-std::string toHlsl(const std::string& module)
-{
-	static const std::regex head(R"(\n[iu]?vec[234] nook\w+\()");
-	std::set<std::string> functions;
-	for (Matches it(module.begin(), module.end(), head), end; it != end; ++it)
-	{
-		addVectors(it->str(), functions);
-	}
-	std::string text;
-	for (std::size_t at = 0; at < module.size();) // function by function, since names are local to each
-	{
-		const std::size_t end = std::min(module.find("\n}\n", at), module.size() - 3) + 3;
-		const std::string code = module.substr(at, end - at);
-		std::set<std::string> vectors = functions;
-		addVectors(code, vectors);
-		text += withWholeComparisons(code, vectors);
-		at = end;
-	}
-	text = renamed(text, {{"bitCount", "countbits"},
-						  {"floatBitsToUint", "asuint"},
-						  {"uintBitsToFloat", "asfloat"},
-						  {"mat4", "float4x4"},
-						  {"line", "one_line"}, // reserved, as is `point`
-						  {"point", "one_point"}});
-	for (const auto& [pattern, by] : {std::pair{R"(\btexelFetch\((\w+), (.*), 0\))", "$1.Load(ivec3($2, 0))"},
-									  std::pair{R"(\bconst (\w+ \w+\[\d+\]) = \w+\[\d+\]\(([^;]*)\);)", "static const $1 = {$2};"},
-									  std::pair{R"(\bnook\.clip \* ([^;]+);)", "mul(nook.clip, $1);"}})
-	{
-		text = std::regex_replace(text, std::regex(pattern), by);
-	}
-	for (const auto& [type, name] : {std::pair{"ivec", "int"}, std::pair{"uvec", "uint"}, std::pair{"vec", "float"}})
-	{
-		text = std::regex_replace(text, std::regex(std::string(R"(\b)") + type + R"(([234])\b)"), std::string(name) + "$1");
-	}
-	return text;
 }
 
 std::string volumesGlsl(const AovTextSettings& settings, const EmitContext& context)

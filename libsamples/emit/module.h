@@ -21,8 +21,16 @@
 namespace nook
 {
 
-std::span<const std::string_view> glslTargets(); // 330 430 es300 vulkan
-std::span<const std::string_view> hlslTargets(); // 60
+// Versions as options take them; WGSL has none.
+template <> inline constexpr std::array<std::string_view, 6> kNamesOf<GlslTarget>{"330", "430", "es300", "vulkan", "60", ""};
+inline std::span<const std::string_view> glslTargets()
+{
+	return namesOf<GlslTarget>().first(4);
+}
+inline std::span<const std::string_view> hlslTargets()
+{
+	return namesOf<GlslTarget>().subspan(4, 1);
+}
 
 // Complete shaders with the entry point `main`. The macro NOOK_PASS selects the pass: 0, the default, is the first one.
 enum class ModuleMain

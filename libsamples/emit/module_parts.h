@@ -83,10 +83,6 @@ struct ModulePass
 };
 std::vector<ModulePass> mainPasses(const ModuleSettings& settings);
 
-// GLSL declarations and functions in the kernels' subset as HLSL: names of types and functions, words that HLSL reserves, and
-// comparisons of vectors, which return vectors there.
-std::string toHlsl(const std::string& module);
-
 // The module in WGSL, with its bindings in one place, and with an entry point per pass if it is a complete shader. Throws Error
 // (unsupported) for GLSL that is not translated.
 std::string moduleWgsl(const ModuleSettings& settings, const EmitContext& context);

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <regex>
 #include <sstream>
 #include <variant>
 
@@ -160,11 +161,6 @@ double texelsOf(const ShadePass& pass)
 	return 1.0 / (side * side);
 }
 
-std::string plural(int count, const std::string& word)
-{
-	return std::to_string(count) + " " + word + (count == 1 ? "" : "s");
-}
-
 std::string sizeText(const ShadeSettings& shade)
 {
 	return shade.half_resolution ? "half the width and height of the picture, rounded up" : "size of the picture";
@@ -181,15 +177,25 @@ std::string pictureText(ShadePacking packing)
 	return "visibility, R8 or better";
 }
 
-// The picture of the last pass over cells, and the function that draws it.
-std::string lastText(const ShadeSettings& shade)
+// Passes over the picture of the pass before. $: the method's function with open directions.
+struct FilterPass
 {
-	return pictureText(shade.half_resolution ? ShadePacking::surface : ShadePacking::none);
-}
-std::string lastCall(const char* call, const ShadeSettings& shade)
-{
-	return std::string(call) + (shade.half_resolution ? "OfSurface" : "");
-}
+	const char* call;
+	bool packs; // its picture is the pass's own, for upsampling or for the end
+	const char* text;
+};
+constexpr std::array kFilterPasses{
+	FilterPass{"nookBilateralX", false, "RGBA8 or better, same size; reads the picture of the pass before as nook_packed"},
+	FilterPass{"nookBilateralY", true, ", same size; reads the picture of nookBilateralX as nook_packed"},
+	FilterPass{"nookWindow", true, ", same size; reads the picture of the pass before as nook_cells"},
+	FilterPass{"nookBentLinked", false,
+			   "the links that the filter needs, RGBA8 or better, same size; reads the picture before as nook_levels"},
+	FilterPass{"nookBentX", false,
+			   "RGBA16F or better, same size; reads the picture of $ as nook_levels, of nookBentLinked as nook_packed"},
+	FilterPass{"nookBentY", false,
+			   "the bent normal as xyz, visibility as w; reads the picture of nookBentX as nook_levels, of nookBentLinked as "
+			   "nook_packed"},
+};
 
 // One line per pass over the picture's pixels or cells.
 std::string passLines(const ModuleSettings& settings, const ModuleMethod& method)
@@ -202,7 +208,8 @@ std::string passLines(const ModuleSettings& settings, const ModuleMethod& method
 	{
 		const std::string call = moduleCallOf(pass);
 		const int depths = depthReadsOf(settings, method, pass);
-		const std::string reads = depths > 0 ? "; at most " + plural(depths, "depth read") + " per texel" : "";
+		const std::string reads =
+			depths > 0 ? "; at most " + counted(static_cast<std::size_t>(depths), "depth read", "depth reads") + " per texel" : "";
 		const std::string_view kernel = pass.kernel.call;
 		if (pass.of_pixel && call == row.open_kernel.call)
 		{
@@ -215,39 +222,6 @@ std::string passLines(const ModuleSettings& settings, const ModuleMethod& method
 			text +=
 				line(call + (of_cell ? "(2 * texel): " : "(texel): ") + pictureText(pass.packing) + ", " + sizeText(shade) + reads);
 		}
-		else if (kernel == "nookBilateralX")
-		{
-			text += line(call + "(texel): RGBA8 or better, same size; reads the picture of the pass before as nook_packed");
-		}
-		else if (kernel == "nookBilateralY")
-		{
-			text += line(lastCall("nookBilateralY", shade) + "(texel): " + lastText(shade) +
-						 ", same size; reads the picture of nookBilateralX as nook_packed" + reads);
-		}
-		else if (kernel == "nookWindow")
-		{
-			text += line(lastCall("nookWindow", shade) + "(texel): " + lastText(shade) +
-						 ", same size; reads the picture of the pass before as nook_cells" + reads);
-		}
-		else if (kernel == "nookBentLinked")
-		{
-			text += line(call +
-						 "(texel): the links that the filter needs, RGBA8 or better, same size; reads the picture before as "
-						 "nook_levels" +
-						 reads);
-		}
-		else if (kernel == "nookBentX")
-		{
-			text += line(call + "(texel): RGBA16F or better, same size; reads the picture of " + row.open_kernel.call +
-						 " as nook_levels, of nookBentLinked as nook_packed");
-		}
-		else if (kernel == "nookBentY")
-		{
-			text += line(call +
-						 "(texel): the bent normal as xyz, visibility as w; reads the picture of nookBentX as nook_levels, of "
-						 "nookBentLinked as nook_packed" +
-						 reads);
-		}
 		else if (kernel == "nookUpsample")
 		{
 			text +=
@@ -256,6 +230,14 @@ std::string passLines(const ModuleSettings& settings, const ModuleMethod& method
 				line("    and those of the method where no cell shows the surface of the pixel. Or draw it as two passes:") +
 				line("    nookUpsample(pixel), which is -1 there: discard, and write depth elsewhere;") +
 				line("    then " + entry + "Left(pixel) where nothing was drawn, by a depth test");
+		}
+		for (const FilterPass& one : kFilterPasses)
+		{
+			if (kernel == one.call)
+			{
+				const std::string what = std::regex_replace(one.text, std::regex("\\$"), row.open_kernel.call);
+				text += line(call + "(texel): " + (one.packs ? pictureText(pass.packing) : "") + what + reads);
+			}
 		}
 	}
 	return text;
@@ -304,7 +286,8 @@ std::string countsText(const ModuleSettings& settings, const ModuleMethod& metho
 	{
 		const int radii = 1 + (pass.block.radii != 0 ? 1 : 0) + pass.block.third;
 		const bool slices = rowOf(method.method).tile_domain.has_value();
-		text += ", " + plural(pass.block.samples, slices ? "slice" : "sample");
+		text += ", " +
+				counted(static_cast<std::size_t>(pass.block.samples), slices ? "slice" : "sample", slices ? "slices" : "samples");
 		text += slices ? " of " + std::to_string(2 * shade.slices.steps) + " samples" : "";
 		text += radii > 1 ? " at each of " + std::to_string(radii) + " radii" : "";
 	}
@@ -375,11 +358,10 @@ void shorten(const TileFile& file, std::size_t count, const std::string& path, s
 	{
 		refuseInput(path + ": --counts", std::to_string(variants.front().count()) + " samples", std::to_string(count) + " or more");
 	}
-	if (count < variants.front().count() && !(file.recipe && file.recipe->progressive))
-	{
-		throw Error(ExitCode::invalid_input, path + ": --counts: found a tile of " + std::to_string(variants.front().count()) +
-												 " samples, expected all of them, or one made with --progressive");
-	}
+	refuseIf(count < variants.front().count() && !(file.recipe && file.recipe->progressive),
+			 path + ": --counts: found a tile of " + std::to_string(variants.front().count()) +
+				 " samples, expected all of them, or one made with --progressive",
+			 ExitCode::invalid_input);
 	for (Pattern& variant : variants)
 	{
 		if (count == variant.count())
@@ -640,11 +622,10 @@ std::string readSamples(const std::string& path, std::optional<std::size_t> coun
 	const Domain expected = domainOf(method.method);
 	const auto checkDomain = [&](Domain found)
 	{
-		if (found != expected)
-		{
-			throw Error(ExitCode::invalid_input, path + ": domain: found " + std::string(nameOf(found)) + ", expected " +
-													 std::string(nameOf(expected)) + " for " + std::string(nameOf(method.method)));
-		}
+		refuseIf(found != expected,
+				 path + ": domain: found " + std::string(nameOf(found)) + ", expected " + std::string(nameOf(expected)) + " for " +
+					 std::string(nameOf(method.method)),
+				 ExitCode::invalid_input);
 	};
 	if (PatternFile* const file = std::get_if<PatternFile>(&input))
 	{

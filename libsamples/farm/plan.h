@@ -35,26 +35,21 @@ struct JobNeeds
 int minutesToAsk(const JobNeeds& needs);
 int mebibytesToAsk(const JobNeeds& needs);
 
-// A command line as it runs in the working folder.
-struct PlanCommand
+struct PlanJob
 {
 	std::string name;                  // letters, digits, '.', '_' and '-'
 	std::vector<std::string> words;    // after `nook`
 	std::vector<std::string> outputs;  // files that it writes
 	std::vector<std::string> inputs;   // files that it reads and that exist now
 	std::vector<std::string> identity; // of its results in the store; empty: the verb has no --cache
-	int shares = 1;
-	JobNeeds needs; // of the whole command
+	std::optional<WorkShare> share;
 };
 
-struct PlanJob
+// A command line as it runs in the working folder, in so many shares.
+struct PlanCommand : PlanJob
 {
-	std::string name;
-	std::vector<std::string> words;
-	std::vector<std::string> outputs;
-	std::vector<std::string> inputs;
-	std::vector<std::string> identity;
-	std::optional<WorkShare> share;
+	int shares = 1;
+	JobNeeds needs; // of the whole command
 };
 
 // Jobs that wait for the same jobs and take the same time: the shares of a command, or one job.

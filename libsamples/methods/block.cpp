@@ -27,15 +27,21 @@ float narrow(double value)
 	return static_cast<float>(value);
 }
 
+// Scales the projection by a power of two so that w is about 1 per metre or 1: then w and its square fit 32 bits, however the
+// matrix was scaled.
+glm::dmat4 unitProjection(const glm::dmat4& projection)
+{
+	const double w = std::max(std::fabs(projection[2][3]), std::fabs(projection[3][3]));
+	return w > 0.0 && std::isfinite(w) ? projection * std::ldexp(1.0, -std::ilogb(w)) : projection;
+}
+
 // Converts one row of the projection for camera.glsl.
 nook_row_numbers acrossOf(const glm::dmat4& p, int row)
 {
 	const int other = 1 - row;
-	if (p[other][row] != 0.0 || p[0][3] != 0.0 || p[1][3] != 0.0 || p[row][row] == 0.0)
-	{
-		throw Error(ExitCode::unsupported,
-					"projection: found one with a skew, expected x and y of the picture to depend on x and y alone");
-	}
+	refuseIf(p[other][row] != 0.0 || p[0][3] != 0.0 || p[1][3] != 0.0 || p[row][row] == 0.0,
+			 "projection: found one with a skew, expected x and y of the picture to depend on x and y alone",
+			 ExitCode::unsupported);
 	double numbers[16];
 	std::copy_n(glm::value_ptr(p), 16, numbers);
 	return nook_row_of(numbers, row);
@@ -82,11 +88,9 @@ void fillBands(ShadeBlock& block, const ShadeSettings& settings, int height_px)
 {
 	const BandSettings& bands = settings.bands;
 	const double most_px = settings.max_radius_px > 0.0 ? settings.max_radius_px : height_px;
-	if (settings.min_radius_px > most_px)
-	{
-		throw Error(ExitCode::usage, "min-pixels: found " + numberText(settings.min_radius_px) + ", expected at most " +
-										 numberText(most_px) + ", the picture's height where nothing else is said (max-pixels)");
-	}
+	refuseIf(settings.min_radius_px > most_px, "min-pixels: found " + numberText(settings.min_radius_px) + ", expected at most " +
+												   numberText(most_px) +
+												   ", the picture's height where nothing else is said (max-pixels)");
 	block.first_band_px = narrow(bands.first_px);
 	block.second_band_px = narrow(bands.second_px);
 	block.most_px = narrow(most_px);
@@ -96,13 +100,56 @@ void fillBands(ShadeBlock& block, const ShadeSettings& settings, int height_px)
 	block.bands = bands.count;
 }
 
-} // namespace
+// Lengths of a G-buffer that the kernels cannot take.
 
-glm::dmat4 unitProjection(const glm::dmat4& projection)
+// Error in the picture's width or height at a depth; empty: none.
+std::string wrongAcross(const glm::dvec3& across, double w, double depth_m)
 {
-	const double w = std::max(std::fabs(projection[2][3]), std::fabs(projection[3][3]));
-	return w > 0.0 && std::isfinite(w) ? projection * std::ldexp(1.0, -std::ilogb(w)) : projection;
+	const double half_m = w * std::fabs(across.x);
+	const double aside_m = depth_m * std::fabs(across.y) + std::fabs(across.z);
+	if (!isLength(half_m))
+	{
+		return ", where half the picture is " + numberText(half_m) + " m";
+	}
+	return aside_m <= kMostLength_m ? "" : ", where the picture's middle is " + numberText(aside_m) + " m aside";
 }
+
+// Requires the block's camera. Throws Error (invalid_input), naming the pixel, if a depth, or half the picture's extent there, is
+// outside the lengths that kernels can square; so no kernel meets an infinity or a radius of 0.
+void checkLengths(const ShadeFrame& frame, const ShadeBlock& block)
+{
+	const glm::dvec3 across_x(block.across_x, block.aside.x);
+	const glm::dvec3 across_y(block.across_y, block.aside.y);
+	for (std::size_t i = 0; i < frame.depth.size(); ++i)
+	{
+		const auto depth_m = static_cast<double>(frame.depth[i]);
+		if (!std::isfinite(depth_m))
+		{
+			continue;
+		}
+		const double w = static_cast<double>(block.w_slope) * depth_m + static_cast<double>(block.w_start);
+		const std::string wrong_x = wrongAcross(across_x, w, depth_m);
+		const std::string wrong = wrong_x.empty() ? wrongAcross(across_y, w, depth_m) : wrong_x;
+		if (isLength(depth_m) && wrong.empty())
+		{
+			continue;
+		}
+		const auto width = static_cast<std::size_t>(frame.width_px);
+		throw Error(ExitCode::invalid_input, "depth, pixel " + std::to_string(i % width) + "," + std::to_string(i / width) +
+												 ": found " + numberText(depth_m) + " m" + (isLength(depth_m) ? wrong : "") +
+												 ", expected lengths from " + numberText(kLeastLength_m) + " to " +
+												 numberText(kMostLength_m) + " m");
+	}
+}
+
+// The block as a table and as GLSL.
+
+#define NOOK_ROW(type, name, meaning) BlockMember{#type, #name, meaning, offsetof(ShadeBlock, name)},
+constexpr std::array kMembers{NOOK_MODULE_MEMBERS(NOOK_ROW) NOOK_OWN_MEMBERS(NOOK_ROW)};
+constexpr std::array kModuleMembers{NOOK_MODULE_MEMBERS(NOOK_ROW)};
+#undef NOOK_ROW
+
+} // namespace
 
 void fillCamera(ShadeBlock& block, const glm::dmat4& given, int width_px, int height_px)
 {
@@ -169,18 +216,13 @@ void fillDepth(ShadeBlock& block, const glm::dmat4& projection, const DepthForma
 	{
 		return;
 	}
-	if (p[0][2] != 0.0 || p[1][2] != 0.0)
-	{
-		throw Error(ExitCode::unsupported, "projection: found a z that depends on x or y, expected none with device depth");
-	}
+	refuseIf(p[0][2] != 0.0 || p[1][2] != 0.0, "projection: found a z that depends on x or y, expected none with device depth",
+			 ExitCode::unsupported);
 	double numbers[16];
 	std::copy_n(glm::value_ptr(p), 16, numbers);
 	nook_depth_numbers depth;
-	if (!nook_depth_of(depth, numbers, format.clip == ClipRange::zero_to_one, format.bits))
-	{
-		throw Error(ExitCode::invalid_input,
-					"projection: found a z that does not depend on depth, expected another with device depth");
-	}
+	refuseIf(!nook_depth_of(depth, numbers, format.clip == ClipRange::zero_to_one, format.bits),
+			 "projection: found a z that does not depend on depth, expected another with device depth", ExitCode::invalid_input);
 	block.depth = glm::vec4(glm::make_vec4(depth.terms));
 	block.far_end = static_cast<float>(depth.far_end);
 	block.depth_step = static_cast<float>(depth.half_step);
@@ -217,63 +259,6 @@ double normalError(int bits)
 	assert(bits >= 8 && bits <= 32);
 	return nook_normal_error(bits);
 }
-
-// Lengths of a G-buffer that the kernels cannot take.
-
-namespace
-{
-
-// Error in the picture's width or height at a depth; empty: none.
-std::string wrongAcross(const glm::dvec3& across, double w, double depth_m)
-{
-	const double half_m = w * std::fabs(across.x);
-	const double aside_m = depth_m * std::fabs(across.y) + std::fabs(across.z);
-	if (!isLength(half_m))
-	{
-		return ", where half the picture is " + numberText(half_m) + " m";
-	}
-	return aside_m <= kMostLength_m ? "" : ", where the picture's middle is " + numberText(aside_m) + " m aside";
-}
-
-} // namespace
-
-void checkLengths(const ShadeFrame& frame, const ShadeBlock& block)
-{
-	const glm::dvec3 across_x(block.across_x, block.aside.x);
-	const glm::dvec3 across_y(block.across_y, block.aside.y);
-	for (std::size_t i = 0; i < frame.depth.size(); ++i)
-	{
-		const auto depth_m = static_cast<double>(frame.depth[i]);
-		if (!std::isfinite(depth_m))
-		{
-			continue;
-		}
-		const double w = static_cast<double>(block.w_slope) * depth_m + static_cast<double>(block.w_start);
-		const std::string wrong_x = wrongAcross(across_x, w, depth_m);
-		const std::string wrong = wrong_x.empty() ? wrongAcross(across_y, w, depth_m) : wrong_x;
-		if (isLength(depth_m) && wrong.empty())
-		{
-			continue;
-		}
-		const auto width = static_cast<std::size_t>(frame.width_px);
-		throw Error(ExitCode::invalid_input, "depth, pixel " + std::to_string(i % width) + "," + std::to_string(i / width) +
-												 ": found " + numberText(depth_m) + " m" + (isLength(depth_m) ? wrong : "") +
-												 ", expected lengths from " + numberText(kLeastLength_m) + " to " +
-												 numberText(kMostLength_m) + " m");
-	}
-}
-
-// The block as a table and as GLSL.
-
-namespace
-{
-
-#define NOOK_ROW(type, name, meaning) BlockMember{#type, #name, meaning, offsetof(ShadeBlock, name)},
-constexpr std::array kMembers{NOOK_MODULE_MEMBERS(NOOK_ROW) NOOK_OWN_MEMBERS(NOOK_ROW)};
-constexpr std::array kModuleMembers{NOOK_MODULE_MEMBERS(NOOK_ROW)};
-#undef NOOK_ROW
-
-} // namespace
 
 std::span<const BlockMember> blockMembers(bool all)
 {

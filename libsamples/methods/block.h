@@ -17,10 +17,6 @@ namespace nook
 
 constexpr int kMomentLevels = 6; // up to texels of 64 × 64 pixels
 
-// Scales the projection by a power of two so that w is about 1 per metre or 1: then w and its square fit 32 bits, however the
-// matrix was scaled.
-glm::dmat4 unitProjection(const glm::dmat4& projection);
-
 // Fills size, pixel_size, across_x, across_y, aside, w_slope, w_start, first and last. Throws Error (unsupported) for a skewed
 // projection.
 void fillCamera(ShadeBlock& block, const glm::dmat4& projection, int width_px, int height_px);
@@ -34,10 +30,6 @@ struct ShadeFrame
 	std::span<const float> depth{};         // GBuffer::depth; empty: unknown so far
 	std::span<const float> depth_error_m{}; // GBuffer::depth_error_m
 };
-
-// Requires the block's camera. Throws Error (invalid_input), naming the pixel, if a depth, or half the picture's extent there, is
-// outside the lengths that kernels can square; so no kernel meets an infinity or a radius of 0.
-void checkLengths(const ShadeFrame& frame, const ShadeBlock& block);
 
 // Depth formats, whose settings are DepthFormat.
 
@@ -53,7 +45,7 @@ void fillMeasuredError(ShadeBlock& block, std::span<const float> depths, std::sp
 // for components stored as 0…1 and, to within a hundredth, as −1…1.
 double normalError(int bits);
 
-// Throws like fillCamera and checkLengths.
+// Throws like fillCamera, and Error (invalid_input), naming the pixel, for lengths that kernels cannot square.
 ShadeBlock blockOf(const ShadeFrame& frame, const ShadeSamples& samples, const ShadeSettings& settings);
 
 // The members of the block as a table, and as GLSL.

@@ -18,7 +18,7 @@ enum class Origin
 	ours,  // nook's patterns and tiles, with matching filters and resolutions, and merged, dropped and fitted volumes
 	rays,
 };
-template <> std::span<const std::string_view> namesOf<Origin>();
+template <> inline constexpr std::array<std::string_view, 3> kNamesOf<Origin>{"paper", "ours", "rays"};
 
 // Where the samples of a screen-space method come from.
 enum class SampleSource
@@ -30,7 +30,8 @@ enum class SampleSource
 	tile,    // nook's pattern, with jointly optimised variants for 4 × 4 pixels; at most kMaxTileCount samples
 	spiral,  // golden-angle spiral, the same for all pixels: for definitions
 };
-template <> std::span<const std::string_view> namesOf<SampleSource>();
+template <>
+inline constexpr std::array<std::string_view, 6> kNamesOf<SampleSource>{"own", "electro", "uniform", "refined", "tile", "spiral"};
 inline constexpr int kMaxTileCount = 16;
 
 enum class GridSize
@@ -39,7 +40,7 @@ enum class GridSize
 	normal, // 337
 	full,   // 1054: all products of counts, sources, filters, resolutions and features
 };
-template <> std::span<const std::string_view> namesOf<GridSize>();
+template <> inline constexpr std::array<std::string_view, 3> kNamesOf<GridSize>{"quick", "normal", "full"};
 
 struct FilterChoice
 {
@@ -76,14 +77,5 @@ std::vector<Item> upTo(GridSize size, const std::vector<Item>& quick, const std:
 {
 	return size == GridSize::quick ? quick : size == GridSize::normal ? normal : full;
 }
-
-// nook's form of a method: its patterns, a variant for each of 4 × 4 pixels.
-CandidateAxes oursAxes(GridSize size, const std::vector<int>& counts);
-
-// By the recipe `rays`, which has three radii for volumetric obscurance, with so many samples at each.
-CandidateAxes fittedAxes(GridSize size, SampleSource source, const std::vector<int>& counts);
-
-// The filters of those two.
-std::vector<FilterChoice> filtersFor(GridSize size);
 
 } // namespace nook

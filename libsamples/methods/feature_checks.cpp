@@ -4,15 +4,12 @@
 #include "core/error.h"
 
 #include <algorithm>
-#include <array>
 #include <string>
 
 namespace nook
 {
 namespace
 {
-
-constexpr std::array<std::string_view, 5> kViews{"edges", "lod", "layers", "samples", "noise"};
 
 // The option with which the method has the view; empty: none.
 std::string_view optionThatShows(DebugView view, const MethodRow& row)
@@ -71,86 +68,52 @@ std::string namesOfTaking(const FeatureRow& row, bool emitted)
 	return methodNames([&](const MethodRow& method) { return takesFeature(method, row) && (!emitted || method.emitted); }, " or ");
 }
 
+// Values that the table alone cannot tell: layers, taps, bands.
+void checkValues(const GivenFeatures& given, const ShadeSettings& settings)
+{
+	refuseIf(isAmong(given, "--taps") && settings.filter != ShadeFilter::bilateral,
+			 "--taps: found with another filter, expected --filter bilateral");
+	refuseIf(settings.filter_taps % 2 == 0, "--taps: found '" + std::to_string(settings.filter_taps) + "', expected an odd number");
+	refuseIf(settings.slices.bent && settings.filter == ShadeFilter::window,
+			 "--bent: found with --filter window, expected bilateral or none");
+	const StatVoSettings& statvo = settings.statvo;
+	const bool halves = statvo.layers == 1 || statvo.layers == 2 || statvo.layers == 4;
+	refuseIf(statvo.layering == StatVoLayering::adaptive && !halves,
+			 "--layers: found '" + std::to_string(statvo.layers) + "', expected 1, 2 or 4, or --layering uniform");
+	for (const FeatureRow& row : featureTable())
+	{
+		refuseIf(isAmong(given, row.option) && !row.base.empty() && !isOn(featureOf(row.base), settings),
+				 std::string(row.option) + ": found without " + std::string(row.base) + ", expected both or none");
+		refuseIf(!row.conflict.empty() && isOn(row, settings) && isOn(featureOf(row.conflict), settings),
+				 std::string(row.option) + ": found with " + std::string(row.conflict) + ", expected one of them");
+	}
+}
+
 } // namespace
 
 void refuseSlicesWithTile(const GivenFeatures& given)
 {
-	if (isAmong(given, "--slices"))
-	{
-		throw Error(ExitCode::usage, "--slices: found with a tile, whose own slices a pixel has, expected one of them");
-	}
+	refuseIf(isAmong(given, "--slices"), "--slices: found with a tile, whose own slices a pixel has, expected one of them");
 }
-
-namespace
-{
-
-// Values that the table alone cannot tell: layers, taps, bands.
-void checkValues(const GivenFeatures& given, const ShadeSettings& settings)
-{
-	if (isAmong(given, "--taps") && settings.filter != ShadeFilter::bilateral)
-	{
-		throw Error(ExitCode::usage, "--taps: found with another filter, expected --filter bilateral");
-	}
-	if (settings.filter_taps % 2 == 0)
-	{
-		throw Error(ExitCode::usage, "--taps: found '" + std::to_string(settings.filter_taps) + "', expected an odd number");
-	}
-	if (settings.slices.bent && settings.filter == ShadeFilter::window)
-	{
-		throw Error(ExitCode::usage, "--bent: found with --filter window, expected bilateral or none");
-	}
-	const StatVoSettings& statvo = settings.statvo;
-	const bool halves = statvo.layers == 1 || statvo.layers == 2 || statvo.layers == 4;
-	if (statvo.layering == StatVoLayering::adaptive && !halves)
-	{
-		throw Error(ExitCode::usage,
-					"--layers: found '" + std::to_string(statvo.layers) + "', expected 1, 2 or 4, or --layering uniform");
-	}
-	for (const FeatureRow& row : featureTable())
-	{
-		if (isAmong(given, row.option) && !row.base.empty() && !isOn(featureOf(row.base), settings))
-		{
-			throw Error(ExitCode::usage,
-						std::string(row.option) + ": found without " + std::string(row.base) + ", expected both or none");
-		}
-		if (!row.conflict.empty() && isOn(row, settings) && isOn(featureOf(row.conflict), settings))
-		{
-			throw Error(ExitCode::usage,
-						std::string(row.option) + ": found with " + std::string(row.conflict) + ", expected one of them");
-		}
-	}
-}
-
-} // namespace
 
 void checkShadeFeatures(const GivenFeatures& given, const ShadeSettings& settings)
 {
 	for (const FeatureRow* const row : given)
 	{
-		if (!takesFeature(rowOf(settings.method), *row))
-		{
-			throw Error(ExitCode::usage,
-						std::string(row->option) + ": found with another method, expected --method " + namesOfTaking(*row, false));
-		}
+		refuseIf(!takesFeature(rowOf(settings.method), *row),
+				 std::string(row->option) + ": found with another method, expected --method " + namesOfTaking(*row, false));
 	}
 	for (const FeatureRow& row : featureTable())
 	{
-		if (!row.needs.empty() && isAmong(given, row.option) != isAmong(given, row.needs))
-		{
-			throw Error(ExitCode::usage,
-						std::string(row.option) + ", " + std::string(row.needs) + ": found one of them, expected both or none");
-		}
+		refuseIf(!row.needs.empty() && isAmong(given, row.option) != isAmong(given, row.needs),
+				 std::string(row.option) + ", " + std::string(row.needs) + ": found one of them, expected both or none");
 	}
 	checkValues(given, settings);
 	const BandSettings& bands = settings.bands;
-	if ((isAmong(given, "--band1-pixels") && bands.count < 2) || (isAmong(given, "--band2-pixels") && bands.count < 3))
-	{
-		throw Error(ExitCode::usage, "--bands: found " + std::to_string(bands.count) + ", expected more bands than limits given");
-	}
-	if (bands.count == 3 && !(bands.first_px < bands.second_px))
-	{
-		throw Error(ExitCode::usage, "--band1-pixels: found no less than --band2-pixels, expected less");
-	}
+	refuseIf((isAmong(given, "--band1-pixels") && bands.count < 2) || (isAmong(given, "--band2-pixels") && bands.count < 3),
+			 "--bands: found " + std::to_string(bands.count) + ", expected more bands than limits given");
+	refuseIf(bands.count == 3 && !(bands.first_px < bands.second_px),
+			 "--band1-pixels: found no less than --band2-pixels, expected less");
 }
 
 void checkEmitFeatures(const GivenFeatures& given, const ShadeSettings& settings, const std::vector<ShadeMethod>& methods)
@@ -161,11 +124,9 @@ void checkEmitFeatures(const GivenFeatures& given, const ShadeSettings& settings
 		{
 			return takesFeature(rowOf(method), *row);
 		};
-		if (std::none_of(methods.begin(), methods.end(), takes))
-		{
-			throw Error(ExitCode::usage, std::string(row->option) + ": found without a method that it changes, expected " +
-											 namesOfTaking(*row, true) + " among --methods");
-		}
+		refuseIf(std::none_of(methods.begin(), methods.end(), takes), std::string(row->option) +
+																		  ": found without a method that it changes, expected " +
+																		  namesOfTaking(*row, true) + " among --methods");
 	}
 	checkValues(given, settings);
 }
@@ -185,14 +146,9 @@ ShadeSettings withRecipe(const ShadeSettings& settings, const std::optional<Meth
 	return result;
 }
 
-std::span<const std::string_view> debugNames()
-{
-	return kViews;
-}
-
 std::string_view debugName(const ShadeSettings& settings)
 {
-	return settings.debug ? kViews[static_cast<std::size_t>(*settings.debug)] : "visibility";
+	return settings.debug ? nameOf(*settings.debug) : "visibility";
 }
 
 void checkDebug(const ShadeSettings& settings)
@@ -207,11 +163,8 @@ void checkDebug(const ShadeSettings& settings)
 
 void checkDebug(const ShadeSettings& settings, const ShadeSamples& samples)
 {
-	if (settings.debug == DebugView::noise && samples.size == 1 && rowOf(settings.method).noise_variants == 0)
-	{
-		throw Error(ExitCode::usage,
-					"--debug: found noise with a pattern, the same at every pixel, expected --pattern with a tile");
-	}
+	refuseIf(settings.debug == DebugView::noise && samples.size == 1 && rowOf(settings.method).noise_variants == 0,
+			 "--debug: found noise with a pattern, the same at every pixel, expected --pattern with a tile");
 }
 
 } // namespace nook

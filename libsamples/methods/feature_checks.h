@@ -31,7 +31,6 @@ ShadeSettings withRecipe(const ShadeSettings& settings, const std::optional<Meth
 						 const GivenFeatures& given);
 
 // Names of DebugView, in its order, and the one that settings ask for, or "visibility".
-std::span<const std::string_view> debugNames();
 std::string_view debugName(const ShadeSettings& settings);
 
 // Refuses a view that says nothing of the method, and once they are known, of the samples.

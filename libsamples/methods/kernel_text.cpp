@@ -136,6 +136,14 @@ std::string nameIn(const std::string& line)
 	return match[1];
 }
 
+// All identifiers outside comments, except members after a dot.
+std::set<std::string> identifiersOf(std::string_view text)
+{
+	std::set<std::string> names;
+	forWords(text, [&](std::size_t begin, std::size_t end) { names.emplace(text.substr(begin, end - begin)); });
+	return names;
+}
+
 } // namespace
 
 KernelText parseKernels(const std::vector<std::string_view>& files)
@@ -180,13 +188,6 @@ const KernelText& screenKernels()
 {
 	static const KernelText text = parseKernels({assets::screen_kernels.begin(), assets::screen_kernels.end()});
 	return text;
-}
-
-std::set<std::string> identifiersOf(std::string_view text)
-{
-	std::set<std::string> names;
-	forWords(text, [&](std::size_t begin, std::size_t end) { names.emplace(text.substr(begin, end - begin)); });
-	return names;
 }
 
 std::string renamed(const std::string& text, const std::map<std::string, std::string>& names)

@@ -35,9 +35,6 @@ KernelText parseKernels(const std::vector<std::string_view>& files);
 // The kernels of all screen-space methods.
 const KernelText& screenKernels();
 
-// All identifiers outside comments, except members after a dot.
-std::set<std::string> identifiersOf(std::string_view text);
-
 // Replaces whole identifiers.
 std::string renamed(const std::string& text, const std::map<std::string, std::string>& names);
 

@@ -11,6 +11,35 @@ namespace
 using namespace feature_parts;
 using shade_kernels::Kernels;
 
+// The filters of those two.
+std::vector<FilterChoice> filtersFor(GridSize size)
+{
+	return upTo<FilterChoice>(size, {kFive}, {kFive, kWindow}, {kNoFilter, kFive, kNine, kWindow});
+}
+
+// nook's form of a method: its patterns, a variant for each of 4 × 4 pixels.
+CandidateAxes oursAxes(GridSize size, const std::vector<int>& counts)
+{
+	CandidateAxes axes;
+	axes.counts = counts;
+	axes.sources =
+		upTo<SampleSource>(size, {SampleSource::tile}, {SampleSource::tile}, {SampleSource::tile, SampleSource::refined});
+	axes.filters = filtersFor(size);
+	return axes;
+}
+
+// By the recipe `rays`, which has three radii for volumetric obscurance, with so many samples at each.
+CandidateAxes fittedAxes(GridSize size, const std::vector<int>& counts)
+{
+	CandidateAxes axes;
+	axes.counts = counts;
+	axes.sources = {SampleSource::tile};
+	axes.filters = filtersFor(size);
+	axes.half = kBothResolutions;
+	axes.rays = {true};
+	return axes;
+}
+
 // Volumetric obscurance.
 
 const std::vector<double> kThin{0.0, 0.5}; // VO §4.3
@@ -33,7 +62,7 @@ std::vector<CandidateAxes> axesOfLines(GridSize size)
 	CandidateAxes own = oursAxes(size, upTo<int>(size, {5, 9, 16}, {3, 5, 7, 9, 12, 16}, {2, 3, 4, 5, 7, 9, 12, 16}));
 	own.thickness = kThin;
 	own.half = kBothResolutions;
-	return {paper, own, fittedAxes(size, SampleSource::tile, upTo<int>(size, {3, 5}, {2, 3, 4, 5, 7}, {2, 3, 4, 5, 7, 9}))};
+	return {paper, own, fittedAxes(size, upTo<int>(size, {3, 5}, {2, 3, 4, 5, 7}, {2, 3, 4, 5, 7, 9}))};
 }
 
 std::vector<CandidateAxes> axesOfPoints(GridSize size)
@@ -43,7 +72,7 @@ std::vector<CandidateAxes> axesOfPoints(GridSize size)
 	CandidateAxes own = oursAxes(size, upTo<int>(size, {6, 12}, {6, 9, 12, 16}, {4, 6, 9, 12, 16}));
 	own.thickness = kThin;
 	own.half = upTo<bool>(size, {false}, kBothResolutions, kBothResolutions);
-	return {paper, own, fittedAxes(size, SampleSource::tile, upTo<int>(size, {6}, {6, 9}, {4, 6, 9, 12}))};
+	return {paper, own, fittedAxes(size, upTo<int>(size, {6}, {6, 9}, {4, 6, 9, 12}))};
 }
 
 std::vector<CandidateAxes> axesOfAreas(GridSize size)
@@ -51,7 +80,7 @@ std::vector<CandidateAxes> axesOfAreas(GridSize size)
 	CandidateAxes own = oursAxes(size, upTo<int>(size, {5}, {3, 5, 9}, {3, 5, 9, 16}));
 	own.half = upTo<bool>(size, {false}, kBothResolutions, kBothResolutions);
 	return {paperOfVolume(size, upTo<int>(size, {5}, {5, 9}, {5, 9, 16})), own,
-			fittedAxes(size, SampleSource::tile, upTo<int>(size, {3}, {3, 5}, {3, 5, 9}))};
+			fittedAxes(size, upTo<int>(size, {3}, {3, 5}, {3, 5, 9}))};
 }
 
 template <int extent> void fillExtent(ShadeBlock& block, const ShadeSettings& /*settings*/)
@@ -81,7 +110,7 @@ std::vector<CandidateAxes> axesOfAlchemy(GridSize size)
 	paper.filters = upTo<FilterChoice>(size, {kThirteen}, {kThirteen}, {kNoFilter, kThirteen});
 	CandidateAxes own = oursAxes(size, upTo<int>(size, {4, 12}, {3, 4, 6, 9, 12, 16}, {3, 4, 6, 9, 12, 16}));
 	own.half = kBothResolutions;
-	return {paper, own, fittedAxes(size, SampleSource::tile, upTo<int>(size, {4, 12}, {4, 6, 9, 12}, {3, 4, 6, 9, 12, 16}))};
+	return {paper, own, fittedAxes(size, upTo<int>(size, {4, 12}, {4, 6, 9, 12}, {3, 4, 6, 9, 12, 16}))};
 }
 
 int alchemyLevels(const ShadeSettings& settings)

@@ -31,6 +31,62 @@ std::vector<MethodRow> rows()
 	return all;
 }
 
+// The tables of methods and features in Markdown.
+
+std::string line(std::initializer_list<std::string> cells)
+{
+	std::string text = "|";
+	for (const std::string& cell : cells)
+	{
+		text += cell.empty() ? " |" : " " + cell + " |";
+	}
+	return text + "\n";
+}
+
+// Powers of ten in scientific form: "1e-6", "1e3"; others as "0.05".
+std::string plainNumber(double value)
+{
+	for (int power = -12; power <= 12; ++power)
+	{
+		const std::string text = "1e" + std::to_string(power);
+		if (std::abs(power) >= 3 && std::strtod(text.c_str(), nullptr) == value)
+		{
+			return text;
+		}
+	}
+	return numberText(value);
+}
+
+// Words as code, numbers unchanged.
+std::string choiceText(std::string_view choice)
+{
+	const bool number = std::all_of(choice.begin(), choice.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+	return number ? std::string(choice) : "`" + std::string(choice) + "`";
+}
+
+std::string samplesText(const MethodRow& method)
+{
+	if (method.kind == MethodKind::volumes)
+	{
+		return "none";
+	}
+	return method.domain ? std::string(nameOf(*method.domain)) : hasNoise(method) ? "its own" : "none";
+}
+
+std::string passesText(const MethodRow& method)
+{
+	return method.moments                 ? "moments of depth"
+		   : method.levels != nullptr     ? "coarser depths"
+		   : method.add_passes != nullptr ? "tables of sums"
+										  : "";
+}
+
+std::string needsText(const MethodRow& method)
+{
+	const std::string normals = method.needs_normals ? "normals" : (method.features & kOfNormals) != 0 ? "normals or none" : "";
+	return method.kind == MethodKind::volumes ? "volumes, " + normals : normals;
+}
+
 } // namespace
 
 std::span<const MethodRow> methodTable()
@@ -115,67 +171,6 @@ ShadeSamples ownSamples(const ShadeSettings& settings)
 	assert(!takesPattern(settings.method));
 	return rowOf(settings.method).own_samples(settings);
 }
-
-// The tables of methods and features in Markdown.
-
-namespace
-{
-
-std::string line(std::initializer_list<std::string> cells)
-{
-	std::string text = "|";
-	for (const std::string& cell : cells)
-	{
-		text += cell.empty() ? " |" : " " + cell + " |";
-	}
-	return text + "\n";
-}
-
-// Powers of ten in scientific form: "1e-6", "1e3"; others as "0.05".
-std::string plainNumber(double value)
-{
-	for (int power = -12; power <= 12; ++power)
-	{
-		const std::string text = "1e" + std::to_string(power);
-		if (std::abs(power) >= 3 && std::strtod(text.c_str(), nullptr) == value)
-		{
-			return text;
-		}
-	}
-	return numberText(value);
-}
-
-// Words as code, numbers unchanged.
-std::string choiceText(std::string_view choice)
-{
-	const bool number = std::all_of(choice.begin(), choice.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
-	return number ? std::string(choice) : "`" + std::string(choice) + "`";
-}
-
-std::string samplesText(const MethodRow& method)
-{
-	if (method.kind == MethodKind::volumes)
-	{
-		return "none";
-	}
-	return method.domain ? std::string(nameOf(*method.domain)) : hasNoise(method) ? "its own" : "none";
-}
-
-std::string passesText(const MethodRow& method)
-{
-	return method.moments                 ? "moments of depth"
-		   : method.levels != nullptr     ? "coarser depths"
-		   : method.add_passes != nullptr ? "tables of sums"
-										  : "";
-}
-
-std::string needsText(const MethodRow& method)
-{
-	const std::string normals = method.needs_normals ? "normals" : (method.features & kOfNormals) != 0 ? "normals or none" : "";
-	return method.kind == MethodKind::volumes ? "volumes, " + normals : normals;
-}
-
-} // namespace
 
 std::string methodsText()
 {

@@ -10,7 +10,6 @@
 
 namespace nook
 {
-
 namespace
 {
 
@@ -75,25 +74,6 @@ private:
 	int m_width;
 	int m_height;
 };
-
-} // namespace
-
-bool debugShows(DebugView view, const ShadeSettings& settings)
-{
-	const MethodRow& row = rowOf(settings.method);
-	switch (view)
-	{
-	case DebugView::edges: break;
-	case DebugView::lod: return row.lod_view.call[0] != '\0' && hasPasses(row, settings);
-	case DebugView::layers: return row.layers_view.call[0] != '\0';
-	case DebugView::samples:
-	case DebugView::noise: return hasNoise(row);
-	}
-	return true;
-}
-
-namespace
-{
 
 // Appends the passes of a debug view, in place of those that draw visibility and filter it, after the passes that `method` reads.
 // Requires settings.debug. The size is the picture's, in pixels.
@@ -323,6 +303,20 @@ private:
 };
 
 } // namespace
+
+bool debugShows(DebugView view, const ShadeSettings& settings)
+{
+	const MethodRow& row = rowOf(settings.method);
+	switch (view)
+	{
+	case DebugView::edges: break;
+	case DebugView::lod: return row.lod_view.call[0] != '\0' && hasPasses(row, settings);
+	case DebugView::layers: return row.layers_view.call[0] != '\0';
+	case DebugView::samples:
+	case DebugView::noise: return hasNoise(row);
+	}
+	return true;
+}
 
 bool hasBentNormals(const ShadeSettings& settings)
 {

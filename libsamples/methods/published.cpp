@@ -35,83 +35,6 @@ std::array<double, kVariants> shuffled(Random& random)
 	return order;
 }
 
-} // namespace
-
-Pattern crytekPoints(int count)
-{
-	assert(count > 0 && count % 8 == 0);
-	Pattern pattern;
-	pattern.domain = Domain::ball;
-	const double step = 1.0 + 2.4 / count;
-	double distance = 1.0;
-	for (int i = 1; i < count; ++i)
-	{
-		distance /= step;
-	}
-	for (int i = 0; i < count; ++i)
-	{
-		const double side = distance / std::sqrt(3.0);
-		pattern.points.emplace_back((i & 4) != 0 ? side : -side, (i & 2) != 0 ? side : -side, (i & 1) != 0 ? side : -side);
-		pattern.weights.push_back(1.0 / count);
-		distance = std::min(1.0, distance * step);
-	}
-	return pattern;
-}
-
-std::vector<glm::vec4> horizonDirections(int directions, std::uint32_t seed)
-{
-	assert(directions > 0);
-	Random random(seed);
-	const std::array<double, kVariants> turns = shuffled(random);
-	const std::array<double, kVariants> jitters = shuffled(random);
-	std::vector<glm::vec4> samples;
-	for (std::size_t variant = 0; variant < kVariants; ++variant)
-	{
-		for (int i = 0; i < directions; ++i)
-		{
-			const SinCos angle = sinCosOf(2.0 * kPi * (i + turns[variant] / kVariants) / directions);
-			samples.emplace_back(angle.cos, angle.sin, (jitters[variant] + 0.5) / kVariants, 1.0 / directions);
-		}
-	}
-	return samples;
-}
-
-std::vector<glm::vec4> sliceDirections(int slices)
-{
-	assert(slices > 0);
-	std::vector<glm::vec4> samples;
-	for (int y = 0; y < 4; ++y)
-	{
-		for (int x = 0; x < 4; ++x)
-		{
-			const double turn = 4 * ((x + y) % 4) + x;
-			const double jitter = (y - x + 4) % 4;
-			for (int i = 0; i < slices; ++i)
-			{
-				const SinCos angle = sinCosOf(kPi * (i + (turn + 0.5) / kVariants) / slices);
-				samples.emplace_back(angle.cos, angle.sin, (jitter + 0.5) / 4.0, 1.0 / slices);
-			}
-		}
-	}
-	return samples;
-}
-
-std::vector<glm::vec4> spiral(int count, int turns)
-{
-	assert(count > 0);
-	std::vector<glm::vec4> samples;
-	for (int i = 0; i < count; ++i)
-	{
-		const double distance = (i + 0.5) / count;
-		const SinCos angle = sinCosOf(2.0 * kPi * distance * turns);
-		samples.emplace_back(distance * angle.cos, distance * angle.sin, distance, 1.0 / count);
-	}
-	return samples;
-}
-
-namespace
-{
-
 using namespace feature_parts;
 using shade_kernels::Kernels;
 
@@ -324,6 +247,78 @@ void fillBitmask(ShadeBlock& block, const ShadeSettings& settings)
 }
 
 } // namespace
+
+Pattern crytekPoints(int count)
+{
+	assert(count > 0 && count % 8 == 0);
+	Pattern pattern;
+	pattern.domain = Domain::ball;
+	const double step = 1.0 + 2.4 / count;
+	double distance = 1.0;
+	for (int i = 1; i < count; ++i)
+	{
+		distance /= step;
+	}
+	for (int i = 0; i < count; ++i)
+	{
+		const double side = distance / std::sqrt(3.0);
+		pattern.points.emplace_back((i & 4) != 0 ? side : -side, (i & 2) != 0 ? side : -side, (i & 1) != 0 ? side : -side);
+		pattern.weights.push_back(1.0 / count);
+		distance = std::min(1.0, distance * step);
+	}
+	return pattern;
+}
+
+std::vector<glm::vec4> horizonDirections(int directions, std::uint32_t seed)
+{
+	assert(directions > 0);
+	Random random(seed);
+	const std::array<double, kVariants> turns = shuffled(random);
+	const std::array<double, kVariants> jitters = shuffled(random);
+	std::vector<glm::vec4> samples;
+	for (std::size_t variant = 0; variant < kVariants; ++variant)
+	{
+		for (int i = 0; i < directions; ++i)
+		{
+			const SinCos angle = sinCosOf(2.0 * kPi * (i + turns[variant] / kVariants) / directions);
+			samples.emplace_back(angle.cos, angle.sin, (jitters[variant] + 0.5) / kVariants, 1.0 / directions);
+		}
+	}
+	return samples;
+}
+
+std::vector<glm::vec4> sliceDirections(int slices)
+{
+	assert(slices > 0);
+	std::vector<glm::vec4> samples;
+	for (int y = 0; y < 4; ++y)
+	{
+		for (int x = 0; x < 4; ++x)
+		{
+			const double turn = 4 * ((x + y) % 4) + x;
+			const double jitter = (y - x + 4) % 4;
+			for (int i = 0; i < slices; ++i)
+			{
+				const SinCos angle = sinCosOf(kPi * (i + (turn + 0.5) / kVariants) / slices);
+				samples.emplace_back(angle.cos, angle.sin, (jitter + 0.5) / 4.0, 1.0 / slices);
+			}
+		}
+	}
+	return samples;
+}
+
+std::vector<glm::vec4> spiral(int count, int turns)
+{
+	assert(count > 0);
+	std::vector<glm::vec4> samples;
+	for (int i = 0; i < count; ++i)
+	{
+		const double distance = (i + 0.5) / count;
+		const SinCos angle = sinCosOf(2.0 * kPi * distance * turns);
+		samples.emplace_back(distance * angle.cos, distance * angle.sin, distance, 1.0 / count);
+	}
+	return samples;
+}
 
 std::vector<MethodRow> publishedRows()
 {

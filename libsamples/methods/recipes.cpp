@@ -195,17 +195,12 @@ std::optional<MethodRecipe> chosenRecipe(const std::string& name, ShadeMethod me
 	std::vector<MethodRecipe> of_file;
 	if (isRecipeFile(name))
 	{
-		if (!name.ends_with(".json"))
-		{
-			throw Error(ExitCode::usage, "--recipe: found '" + name + "', expected paper, rays or FILE.json");
-		}
+		refuseIf(!name.ends_with(".json"), "--recipe: found '" + name + "', expected paper, rays or FILE.json");
 		of_file = readRecipes(name);
 	}
 	const MethodRecipe* const found = recipeFor(isRecipeFile(name) ? of_file : raysRecipes(), method);
-	if (found == nullptr && isRecipeFile(name))
-	{
-		throw Error(ExitCode::invalid_input, name + ": recipes: found none of " + std::string(nameOf(method)) + ", expected one");
-	}
+	refuseIf(found == nullptr && isRecipeFile(name),
+			 name + ": recipes: found none of " + std::string(nameOf(method)) + ", expected one", ExitCode::invalid_input);
 	return found != nullptr ? std::optional(*found) : std::nullopt;
 }
 

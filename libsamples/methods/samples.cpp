@@ -17,7 +17,6 @@
 
 namespace nook
 {
-
 namespace
 {
 
@@ -43,6 +42,26 @@ std::size_t twinOf(const Pattern& pattern, std::size_t i)
 	return pattern.count();
 }
 
+MaskTables madeTables(int count)
+{
+	MaskTables tables;
+	tables.directions = count;
+	for (const glm::vec4& d : maskDirections(count))
+	{
+		tables.rays.push_back(glm::vec3(d) * (1.0F - d.w));
+	}
+	tables.rays.resize((tables.rays.size() + 127) / 128 * 128);
+	volume_kernels::Kernels kernels;
+	kernels.rays = tables.rays;
+	const int side = kernels.nookHalfSpaces();
+	const auto fours = static_cast<int>(tables.rays.size() / 128);
+	for (int i = 0; i < fours * side * side; ++i)
+	{
+		tables.half_spaces.push_back(kernels.nookHalfSpaceTexel({i % side, i / side % side}, i / (side * side)));
+	}
+	return tables;
+}
+
 } // namespace
 
 Pattern pairedPattern(const Pattern& pattern)
@@ -58,12 +77,9 @@ Pattern pairedPattern(const Pattern& pattern)
 	for (std::size_t i = 0; i < pattern.count(); ++i)
 	{
 		const std::size_t twin = twinOf(pattern, i);
-		if (twin == pattern.count() || (twin == i && centre.count() > 0))
-		{
-			throw Error(ExitCode::invalid_input,
-						"sample " + std::to_string(i) +
-							": found no other at the opposite side, expected a symmetric pattern (paired)");
-		}
+		refuseIf(twin == pattern.count() || (twin == i && centre.count() > 0),
+				 "sample " + std::to_string(i) + ": found no other at the opposite side, expected a symmetric pattern (paired)",
+				 ExitCode::invalid_input);
 		if (twin == i)
 		{
 			take(centre, i);
@@ -131,31 +147,6 @@ std::vector<glm::vec4> maskDirections(int count)
 	}
 	return directions;
 }
-
-namespace
-{
-
-MaskTables madeTables(int count)
-{
-	MaskTables tables;
-	tables.directions = count;
-	for (const glm::vec4& d : maskDirections(count))
-	{
-		tables.rays.push_back(glm::vec3(d) * (1.0F - d.w));
-	}
-	tables.rays.resize((tables.rays.size() + 127) / 128 * 128);
-	volume_kernels::Kernels kernels;
-	kernels.rays = tables.rays;
-	const int side = kernels.nookHalfSpaces();
-	const auto fours = static_cast<int>(tables.rays.size() / 128);
-	for (int i = 0; i < fours * side * side; ++i)
-	{
-		tables.half_spaces.push_back(kernels.nookHalfSpaceTexel({i % side, i / side % side}, i / (side * side)));
-	}
-	return tables;
-}
-
-} // namespace
 
 const MaskTables& maskTablesOf(int count)
 {

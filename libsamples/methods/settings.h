@@ -53,6 +53,7 @@ enum class DebugView
 	samples, // fraction of the samples taken
 	noise,   // standard deviation over all variants of the window; sao: over sixteen rotations of the spiral
 };
+template <> inline constexpr std::array<std::string_view, 5> kNamesOf<DebugView>{"edges", "lod", "layers", "samples", "noise"};
 
 // The depth that an engine stores, and its precision.
 struct DepthFormat

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -195,54 +194,41 @@ void addStatVo(ShadePlan& plan, ShadePass& method, const ShadeBlock& block, cons
 	const std::int64_t width = partsOf(block.last.x - block.first.x + 1, settings.cell_px) + 1;
 	const std::int64_t height = partsOf(block.last.y - block.first.y + 1, settings.cell_px) + 1;
 	const std::int64_t bytes = width * height * kEntryBytes * (tablesOf(settings) + 2);
-	if (bytes > kMostBytes)
-	{
-		throw Error(ExitCode::unsupported, "tables: found " + std::to_string(bytes >> 20) + " MiB of " +
-											   std::to_string(settings.layers) + " layers, expected at most " +
-											   std::to_string(kMostBytes >> 20));
-	}
+	refuseIf(bytes > kMostBytes,
+			 "tables: found " + std::to_string(bytes >> 20) + " MiB of " + std::to_string(settings.layers) +
+				 " layers, expected at most " + std::to_string(kMostBytes >> 20),
+			 ExitCode::unsupported);
 	StatVoPlanner(plan, block, settings, compute).add(method);
 }
 
 // Describes the passes for users of a module: which functions draw which pictures, one per line.
 std::string statVoPassesText(const ShadeSettings& settings)
 {
-	const auto line = [](const std::string& text)
-	{
-		return text + "\n";
-	};
 	const StatVoSettings& statvo = settings.statvo;
 	const std::string cell = std::to_string(statvo.cell_px);
-	std::string text =
-		line("width and height below are those of all pixels that hold depth, guard band included:") +
-		line("nookStatRange(texel): RGBA32F, 2 ceil(width / 8) x ceil(height / 8); 64 depth reads per texel") +
-		line("nookStatRangeUp(texel), again and again until the picture is 2 x 1: RGBA32F, 2 ceil(w / 8) x ceil(h / 8); reads the "
-			 "picture") +
-		line("    before as nook_levels; nook_pass.xy = (w, h), where that picture has 2 w x h texels") +
-		line("nookStatFrame(texel): RGBA32F, 2 x 1; reads the last of these as nook_levels; later passes read it as nook_range") +
-		line("for each table t from 0 to " + std::to_string(statvo.layers - 1) + ":") +
-		line("    nookStatCells(texel): RGBA32UI, ceil(width / " + cell + ") + 1 x ceil(height / " + cell +
-			 ") + 1; nook_pass.z = t; reads the tables so far as nook_tables;") +
-		line("        " + std::string(statvo.layers > 1 && statvo.layering == StatVoLayering::adaptive
-										  ? "1 depth read per pixel for t = 0, 2 for others"
-										  : "1 depth read per pixel")) +
-		line("    nookTableSum(texel): same size; reads the picture before as layer 0 of nook_tables; for axis 0, then for axis 1, "
-			 "with the") +
-		line("        strides 1, 8, 64, ... below the length of that side; nook_pass.xy = (stride, axis); the last one is layer t "
-			 "of "
-			 "nook_tables");
-	if (statvo.skip && statvo.layers > 1)
-	{
-		text += line("nookStatSlopes(texel): level 0 of a picture RGBA32F, ceil(width / 8) x ceil(height / 8), with all mip "
-					 "levels; 256 depth "
-					 "reads per texel") +
-				line("nookStatSlopesUp(texel): its other levels, each from the one before as nook_levels; nook_pass.x = level") +
-				line("nookStatFlags(texel): R32F, ceil(width / 8) x ceil(height / 8); reads that picture as nook_levels; 64 depth "
-					 "reads per "
-					 "texel;") +
-				line("    the next pass reads this one as nook_levels");
-	}
-	return text;
+	const bool twice = statvo.layers > 1 && statvo.layering == StatVoLayering::adaptive;
+	return "width and height below are those of all pixels that hold depth, guard band included:\n"
+		   "nookStatRange(texel): RGBA32F, 2 ceil(width / 8) x ceil(height / 8); 64 depth reads per texel\n"
+		   "nookStatRangeUp(texel), again and again until the picture is 2 x 1: RGBA32F, 2 ceil(w / 8) x ceil(h / 8); reads the "
+		   "picture\n"
+		   "    before as nook_levels; nook_pass.xy = (w, h), where that picture has 2 w x h texels\n"
+		   "nookStatFrame(texel): RGBA32F, 2 x 1; reads the last of these as nook_levels; later passes read it as nook_range\n"
+		   "for each table t from 0 to " +
+		   std::to_string(statvo.layers - 1) + ":\n    nookStatCells(texel): RGBA32UI, ceil(width / " + cell +
+		   ") + 1 x ceil(height / " + cell + ") + 1; nook_pass.z = t; reads the tables so far as nook_tables;\n        " +
+		   (twice ? "1 depth read per pixel for t = 0, 2 for others\n" : "1 depth read per pixel\n") +
+		   "    nookTableSum(texel): same size; reads the picture before as layer 0 of nook_tables; for axis 0, then for axis 1, "
+		   "with the\n"
+		   "        strides 1, 8, 64, ... below the length of that side; nook_pass.xy = (stride, axis); the last one is layer t of "
+		   "nook_tables\n" +
+		   (!statvo.skip || statvo.layers == 1
+				? ""
+				: "nookStatSlopes(texel): level 0 of a picture RGBA32F, ceil(width / 8) x ceil(height / 8), with all mip levels; "
+				  "256 depth reads per texel\n"
+				  "nookStatSlopesUp(texel): its other levels, each from the one before as nook_levels; nook_pass.x = level\n"
+				  "nookStatFlags(texel): R32F, ceil(width / 8) x ceil(height / 8); reads that picture as nook_levels; 64 depth "
+				  "reads per texel;\n"
+				  "    the next pass reads this one as nook_levels\n");
 }
 
 // StatVO uses all pixels instead of samples: its kernel reads no values.

@@ -519,41 +519,40 @@ void addCell(Cells& cells, int index, const glm::dvec3& direction, const std::ve
 	cells.centroids[i] = cells.integrals[i] > kLeastCell ? moment / area : direction;
 }
 
-} // namespace
-
-Cells planeCells(Domain domain, std::span<const glm::dvec3> points, std::span<const double> powers)
+// The cells of the visible points, each added by add(cells, index, its neighbours).
+template <class Add> Cells cellsOf(std::span<const glm::dvec3> points, const Neighbours& neighbours, const Add& add)
 {
-	const Neighbours neighbours = planeNeighbours(points, powers);
 	Cells cells;
 	cells.integrals.assign(points.size(), 0.0);
 	cells.centroids.assign(points.begin(), points.end());
-	PlaneCell cell(domain, points);
 	for (std::size_t i = 0; i < points.size(); ++i)
 	{
 		if (neighbours.visible[i] != 0)
 		{
-			cell.build(static_cast<int>(i), powers, neighbours.lists[i]);
-			cell.addTo(cells);
+			add(cells, static_cast<int>(i), neighbours.lists[i]);
 		}
 	}
 	return cells;
 }
 
+} // namespace
+
+Cells planeCells(Domain domain, std::span<const glm::dvec3> points, std::span<const double> powers)
+{
+	PlaneCell cell(domain, points);
+	return cellsOf(points, planeNeighbours(points, powers),
+				   [&](Cells& cells, int i, const std::vector<int>& list)
+				   {
+					   cell.build(i, powers, list);
+					   cell.addTo(cells);
+				   });
+}
+
 Cells spaceCells(std::span<const glm::dvec3> points, std::span<const double> powers)
 {
-	const Neighbours neighbours = spaceNeighbours(points, powers);
-	Cells cells;
-	cells.integrals.assign(points.size(), 0.0);
-	cells.centroids.assign(points.begin(), points.end());
 	SpaceCell cell(points, powers);
-	for (std::size_t i = 0; i < points.size(); ++i)
-	{
-		if (neighbours.visible[i] != 0)
-		{
-			cell.addTo(cells, static_cast<int>(i), neighbours.lists[i]);
-		}
-	}
-	return cells;
+	return cellsOf(points, spaceNeighbours(points, powers),
+				   [&](Cells& cells, int i, const std::vector<int>& list) { cell.addTo(cells, i, list); });
 }
 
 Cells directionCells(std::span<const glm::dvec3> points, std::span<const double> powers)
@@ -565,20 +564,16 @@ Cells directionCells(std::span<const glm::dvec3> points, std::span<const double>
 		unit[i] = glm::normalize(points[i]); // rounded directions are not exactly of unit length
 		scaled[i] = powers.empty() ? unit[i] : expOf(powers[i]) * unit[i];
 	}
-	const Neighbours neighbours = directionNeighbours(scaled);
-	Cells cells;
-	cells.integrals.assign(points.size(), 0.0);
-	cells.centroids.assign(points.begin(), points.end());
 	std::vector<ArcCorner> polygon;
 	std::vector<ArcCorner> scratch;
-	for (std::size_t i = 0; i < points.size(); ++i)
+	const auto add = [&](Cells& cells, int index, const std::vector<int>& list)
 	{
-		const std::vector<int>& list = neighbours.lists[i];
-		if (neighbours.visible[i] != 0 && list.empty()) // no neighbours: the whole sphere
+		const auto i = static_cast<std::size_t>(index);
+		if (list.empty()) // no neighbours: the whole sphere
 		{
 			cells.integrals[i] = 1.0;
 			cells.centroids[i] = glm::dvec3(0.0);
-			continue;
+			return;
 		}
 		polygon.clear();
 		for (std::size_t k = 0; k < list.size(); ++k)
@@ -595,10 +590,10 @@ Cells directionCells(std::span<const glm::dvec3> points, std::span<const double>
 		}
 		if (polygon.size() >= 2)
 		{
-			addCell(cells, static_cast<int>(i), unit[i], polygon, scaled);
+			addCell(cells, index, unit[i], polygon, scaled);
 		}
-	}
-	return cells;
+	};
+	return cellsOf(points, directionNeighbours(scaled), add);
 }
 
 } // namespace nook::detail

@@ -28,9 +28,12 @@
 
 #include <glm/geometric.hpp>
 
-// Contributions of samples to the squared error and its gradient, one row per sample: from the domain, and from pairs of samples.
-namespace nook::energy
+namespace nook
 {
+namespace
+{
+
+// Contributions of samples to the squared error and its gradient, one row per sample: from the domain, and from pairs of samples.
 
 using namespace kernels;
 
@@ -47,7 +50,7 @@ struct Setup
 	}
 };
 
-inline Setup makeSetup(Domain domain, Ensemble ensemble)
+Setup makeSetup(Domain domain, Ensemble ensemble)
 {
 	if (ensemble == Ensemble::cliff)
 	{
@@ -72,7 +75,7 @@ struct Sample
 	double weight;
 };
 
-inline std::vector<Sample> makeSamples(const Setup& setup, std::span<const glm::dvec3> points, std::span<const double> weights)
+std::vector<Sample> makeSamples(const Setup& setup, std::span<const glm::dvec3> points, std::span<const double> weights)
 {
 	const auto sampleOf = [&](std::size_t i)
 	{
@@ -89,7 +92,7 @@ struct RowTerms
 	glm::dvec3 gradient{0.0}; // derivative of U_i − Σ_j w_j K_ij by p_i
 };
 
-inline void addPotential(const Setup& setup, const Sample& sample, RowTerms& row)
+void addPotential(const Setup& setup, const Sample& sample, RowTerms& row)
 {
 	const double r2 = glm::dot(sample.p, sample.p);
 	if (setup.domain == Domain::slice)
@@ -117,8 +120,7 @@ inline void addPotential(const Setup& setup, const Sample& sample, RowTerms& row
 }
 
 // Adds scale · w_j · K(p_i, q) and its gradient, where q is sample j or a rotated copy of it. `same` marks i = j.
-inline void addPair(const Setup& setup, const Sample& i, const glm::dvec3& q, const Sample& j, bool same, double scale,
-					RowTerms& row)
+void addPair(const Setup& setup, const Sample& i, const glm::dvec3& q, const Sample& j, bool same, double scale, RowTerms& row)
 {
 	const double w = scale * j.weight;
 	if (setup.domain == Domain::slice)
@@ -150,7 +152,7 @@ inline void addPair(const Setup& setup, const Sample& i, const glm::dvec3& q, co
 }
 
 // Adds share · K(a, b) of two different samples, with its gradient, to both rows.
-inline void addPairBothWays(const Setup& setup, const Sample& a, const Sample& b, double share, RowTerms& row_a, RowTerms& row_b)
+void addPairBothWays(const Setup& setup, const Sample& a, const Sample& b, double share, RowTerms& row_a, RowTerms& row_b)
 {
 	const glm::dvec3 difference = a.p - b.p;
 	const double weight_a = share * a.weight;
@@ -245,15 +247,6 @@ private:
 	LinePairs::Of<double> m_share;
 	std::size_t m_count = 0;
 };
-
-} // namespace nook::energy
-
-namespace nook
-{
-namespace
-{
-
-using namespace energy;
 
 // Rotations that approximate all: the mean over the angle is smooth, and the trapezoid rule's error is below 1e-6 of plane².
 constexpr int kBiasRotations = 48;
@@ -458,9 +451,7 @@ std::vector<double> pairTerms(Domain domain, std::span<const glm::dvec3> first, 
 	return pairs;
 }
 
-// Squared error of means over the variants of a tile. The formulas are in energy.cpp.
-
-using namespace energy;
+// Squared error of means over the variants of a tile.
 
 std::vector<std::size_t> TileShares::offsets(std::size_t end) const
 {

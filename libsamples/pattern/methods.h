@@ -160,38 +160,13 @@ std::vector<double> weightsFor(const Recipe& recipe, const Layout& layout, std::
 // Non-negative weights with sum 1 that minimise the points' squared error over the half-space ensemble.
 std::vector<double> fittedWeights(Domain domain, std::span<const glm::dvec3> points);
 
-// One step of Lloyd's method: the weighted centroids, moved into the domain and onto the layout.
-Points centroidsOf(const Layout& layout, const Cells& cells);
-
-// The greatest distance that any point moves between the two sets.
-double greatestMove(const Points& from, const Points& to);
-
-// Loos & Sloan 2010, §4.5.
-void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points, const Seen& seen);
-
-// Centroidal Voronoi: moves every point to the weighted centroid of its cell until no point moves by more than 1e-7.
-void relaxLloyd(const Recipe& recipe, const Layout& layout, Points& points, const Seen& seen, int max_rounds = 400);
-
-// Minimises Σ d^−exponent of directions near the start; returns that energy.
-double relaxSphereEnergy(const Layout& layout, double exponent, Points& points, const Seen& seen);
-
 // Power-diagram weights for which every cell's integral is 1/count. Newton's method (Kitagawa, Mérigot and Thibert 2019); relative
 // spread below 1e-12 unless points coincide. Throws Error (runtime) if it does not converge.
 std::vector<double> equalisingPowers(Domain domain, std::span<const glm::dvec3> points);
 
-// Capacity-constrained centroidal power diagram (de Goes et al. 2012): alternates equalisingPowers and centroids.
-void relaxEqual(const Layout& layout, Points& points, int rounds, const Seen& seen);
-
 // The best of the recipe's starts after its own relaxation (electro, lloyd or equal). Ranked by equal integrals for electro (on the
 // sphere: least energy), by the plane error for the others.
 Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch);
-
-// Gradient descent on the recipe's measure; returns the value reached. plane_limit: soft limit of the plane error; 0: none.
-double descend(const Recipe& recipe, const Layout& layout, Points& points, Minimise minimise, double plane_limit, int threads,
-			   const Seen& seen);
-
-// The recipe's measure of given points and weights: the objective of descend.
-double measureValue(Domain domain, Minimise minimise, std::span<const glm::dvec3> points, std::span<const double> weights);
 
 // The best of the recipe's starts, each refined.
 Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch);

@@ -4,57 +4,16 @@
 #include "core/decimal.h"
 #include "core/error.h"
 
-#include <array>
-
 namespace nook
 {
-
-template <> std::span<const std::string_view> namesOf<Domain>()
-{
-	static constexpr std::array<std::string_view, 5> names{"disk", "ball", "sphere", "hemisphere", "slice"};
-	return names;
-}
 
 std::span<const std::string_view> patternDomains()
 {
 	return namesOf<Domain>().first(4);
 }
 
-template <> std::span<const std::string_view> namesOf<Method>()
-{
-	static constexpr std::array<std::string_view, 8> names{"refine",  "electro", "equal", "random",
-														   "poisson", "halton",  "vogel", "lloyd"};
-	return names;
-}
-
-template <> std::span<const std::string_view> namesOf<Minimise>()
-{
-	static constexpr std::array<std::string_view, 4> names{"rms", "noise", "cliff", "window"};
-	return names;
-}
-
-template <> std::span<const std::string_view> namesOf<WeightRule>()
-{
-	static constexpr std::array<std::string_view, 3> names{"voronoi", "equal", "fitted"};
-	return names;
-}
-
-template <> std::span<const std::string_view> namesOf<Order>()
-{
-	static constexpr std::array<std::string_view, 2> names{"none", "progressive"};
-	return names;
-}
-
 namespace
 {
-
-void refuseIf(bool condition, const std::string& message)
-{
-	if (condition)
-	{
-		throw Error(ExitCode::usage, message);
-	}
-}
 
 void checkRange(const char* option, double value, double least, double most, const char* range)
 {

@@ -2,12 +2,14 @@
 // Settings of the pattern generator, their names, and which of them exclude each other.
 #pragma once
 
+#include "core/error.h"
 #include "core/progress.h"
 #include "pattern/pattern.h"
-#include <cstddef>
-#include <functional>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -66,6 +68,15 @@ struct Recipe
 	double exponent = 0.0; // exponent of the sphere's repulsion energy 1/d^exponent, 0.1 to 64; 0: 1 (Thomson's problem)
 };
 
+// Throws Error where a condition holds.
+inline void refuseIf(bool condition, const std::string& message, ExitCode code = ExitCode::usage)
+{
+	if (condition)
+	{
+		throw Error(code, message);
+	}
+}
+
 // Throws Error (usage) if a value is out of range or options exclude each other; the message names the options.
 void checkRecipe(const Recipe& recipe);
 
@@ -75,8 +86,22 @@ int defaultStarts(const Recipe& recipe);
 // The command that makes this pattern, without outputs and defaults: "nook pattern --domain disk --count 9 --symmetric".
 std::string patternCommand(const Recipe& recipe);
 
-// Names as on the command line and in JSON. namesOf<Enum>() lists them in enumerator order.
-template <class Enum> std::span<const std::string_view> namesOf();
+// Structure of a pattern in the catalogue and in the report on noise.
+enum class Variant
+{
+	free,
+	centred,
+	symmetric,
+};
+
+// Names as on the command line and in JSON, in enumerator order.
+template <class Enum> inline constexpr std::array<std::string_view, 0> kNamesOf{};
+
+template <class Enum> std::span<const std::string_view> namesOf()
+{
+	static_assert(!kNamesOf<Enum>.empty(), "an enumeration without names");
+	return kNamesOf<Enum>;
+}
 
 template <class Enum> std::string_view nameOf(Enum value)
 {
@@ -96,15 +121,18 @@ template <class Enum> std::optional<Enum> valueNamed(std::string_view name)
 	return std::nullopt;
 }
 
-template <> std::span<const std::string_view> namesOf<Domain>();
+template <> inline constexpr std::array<std::string_view, 5> kNamesOf<Domain>{"disk", "ball", "sphere", "hemisphere", "slice"};
 
 // The domains of stand-alone patterns.
 std::span<const std::string_view> patternDomains();
 
-template <> std::span<const std::string_view> namesOf<Method>();
-template <> std::span<const std::string_view> namesOf<Minimise>();
-template <> std::span<const std::string_view> namesOf<WeightRule>();
-template <> std::span<const std::string_view> namesOf<Order>();
+template <>
+inline constexpr std::array<std::string_view, 8> kNamesOf<Method>{"refine",  "electro", "equal", "random",
+																  "poisson", "halton",  "vogel", "lloyd"};
+template <> inline constexpr std::array<std::string_view, 4> kNamesOf<Minimise>{"rms", "noise", "cliff", "window"};
+template <> inline constexpr std::array<std::string_view, 3> kNamesOf<WeightRule>{"voronoi", "equal", "fitted"};
+template <> inline constexpr std::array<std::string_view, 2> kNamesOf<Order>{"none", "progressive"};
+template <> inline constexpr std::array<std::string_view, 3> kNamesOf<Variant>{"free", "centred", "symmetric"};
 
 // Called with a start's number and its current points while they move; several starts run in parallel if there are several threads.
 // Never changes the result. May be empty.

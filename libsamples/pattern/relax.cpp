@@ -60,7 +60,7 @@ Points moved(const Layout& layout, const Points& points, const Points& step, dou
 class Spread
 {
 public:
-	Spread(const Recipe& recipe, const Layout& layout, Points points) : m_recipe(recipe), m_layout(layout)
+	Spread(const Layout& layout, Points points) : m_layout(layout)
 	{
 		take(std::move(points));
 	}
@@ -68,17 +68,17 @@ public:
 	void take(Points points)
 	{
 		m_points = std::move(points);
-		m_cells = exactCells(m_recipe.domain, m_points);
+		m_cells = exactCells(m_layout.domain(), m_points);
 		m_error = relativeSpread(m_cells.integrals);
 	}
 
 	// One force step, shortened until the error falls and longer the next time if accepted. False if no step helps.
 	bool repel(double& step)
 	{
-		const Points force = repulsion(m_recipe.domain, m_points);
+		const Points force = repulsion(m_layout.domain(), m_points);
 		for (int trial = 0; trial < 4; ++trial)
 		{
-			Spread candidate(m_recipe, m_layout, moved(m_layout, m_points, force, step));
+			Spread candidate(m_layout, moved(m_layout, m_points, force, step));
 			if (candidate.m_error < m_error)
 			{
 				m_points.swap(candidate.m_points);
@@ -106,12 +106,169 @@ public:
 	}
 
 private:
-	const Recipe& m_recipe;
 	const Layout& m_layout;
 	Points m_points;
 	Cells m_cells;
 	double m_error = 0.0;
 };
+
+// One step of Lloyd's method: the weighted centroids, moved into the domain and onto the layout.
+Points centroidsOf(const Layout& layout, const Cells& cells)
+{
+	Points target = cells.centroids;
+	for (glm::dvec3& p : target)
+	{
+		// If one cell covers the whole sphere, its centroid is the centre; any direction will do.
+		p = layout.domain() == Domain::sphere && glm::dot(p, p) < 1e-20 ? glm::dvec3(0, 0, 1) : placeInDomain(layout.domain(), p);
+	}
+	return layout.expand(layout.freePoints(target));
+}
+
+// The greatest distance that any point moves between the two sets.
+double greatestMove(const Points& from, const Points& to)
+{
+	double greatest = 0.0;
+	for (std::size_t i = 0; i < from.size(); ++i)
+	{
+		greatest = std::max(greatest, glm::distance(from[i], to[i]));
+	}
+	return greatest;
+}
+
+// Loos & Sloan 2010, §4.5.
+void relaxElectro(const Layout& layout, Points& points, const Seen& seen)
+{
+	// Tuned on disk 9, 16, 33 and ball 12, 33 (32 starts): 100 rounds lower the plane error by at most 0.4 %, six force steps by
+	// 0.3 %; a single force step raises it by up to 5 %.
+	constexpr int kRounds = 40;
+	constexpr int kForceSteps = 3;
+	const double spacing = 1.0 / std::sqrt(static_cast<double>(points.size()));
+	double step = 0.2 * spacing;
+	Spread spread(layout, points);
+	Points best = points;
+	double best_error = spread.error();
+	const auto keepBest = [&]
+	{
+		if (spread.error() <= best_error)
+		{
+			best = spread.points();
+			best_error = spread.error();
+		}
+		if (seen)
+		{
+			seen(spread.points());
+		}
+	};
+	for (int round = 0; round < kRounds; ++round)
+	{
+		for (int k = 0; k < kForceSteps; ++k)
+		{
+			if (!spread.repel(step))
+			{
+				break;
+			}
+		}
+		keepBest();
+		// The periodic pull toward the weighted centroids.
+		Points target = centroidsOf(layout, spread.cells());
+		const double move = greatestMove(spread.points(), target);
+		spread.take(std::move(target));
+		keepBest();
+		step = std::clamp(step, 1e-4 * spacing, 0.2 * spacing);
+		if (move < 1e-4 * spacing)
+		{
+			break;
+		}
+	}
+	points = best;
+}
+
+// Moves every point to the weighted centroid of its cell until no point moves by more than `least_move`. `cells`: of the points.
+template <class CellsOf>
+void relaxToCentroids(const Layout& layout, Points& points, int max_rounds, double least_move, const Seen& seen,
+					  const CellsOf& cells)
+{
+	for (int round = 0; round < max_rounds; ++round)
+	{
+		const Points target = centroidsOf(layout, cells());
+		const double move = greatestMove(points, target);
+		points = target;
+		if (seen)
+		{
+			seen(points);
+		}
+		if (move < least_move)
+		{
+			break;
+		}
+	}
+}
+
+// Centroidal Voronoi.
+void relaxLloyd(const Layout& layout, Points& points, int max_rounds, const Seen& seen)
+{
+	relaxToCentroids(layout, points, max_rounds, 1e-7, seen, [&] { return exactCells(layout.domain(), points); });
+}
+
+// Capacity-constrained centroidal power diagram (de Goes et al. 2012): alternates equalisingPowers and centroids.
+void relaxEqual(const Layout& layout, Points& points, int max_rounds, const Seen& seen)
+{
+	relaxToCentroids(layout, points, max_rounds, 1e-6, seen,
+					 [&] { return exactCells(layout.domain(), points, equalisingPowers(layout.domain(), points)); });
+}
+
+// Minimises Σ d^−exponent of directions near the start; returns that energy.
+double relaxSphereEnergy(const Layout& layout, double exponent, Points& points, const Seen& seen)
+{
+	// Minimises log(energy)/exponent: same minimum, but no overflow or bad scaling for high exponents.
+	Points all;
+	Points gradient_points;
+	const auto objective = [&](std::span<const double> x, std::span<double> gradient)
+	{
+		if (!layout.points(x, all))
+		{
+			return std::numeric_limits<double>::infinity();
+		}
+		gradient_points.assign(all.size(), glm::dvec3(0.0));
+		double energy = 0.0;
+		for (std::size_t i = 0; i < all.size(); ++i)
+		{
+			for (std::size_t j = i + 1; j < all.size(); ++j)
+			{
+				const glm::dvec3 d = all[i] - all[j];
+				const double d2 = glm::dot(d, d);
+				if (d2 == 0.0)
+				{
+					return std::numeric_limits<double>::infinity();
+				}
+				const double term = exponent == 1.0 ? 1.0 / std::sqrt(d2) : powOf(d2, -0.5 * exponent);
+				energy += term;
+				const glm::dvec3 pull = (exponent * term / d2) * d;
+				gradient_points[i] -= pull;
+				gradient_points[j] += pull;
+			}
+		}
+		if (energy == 0.0) // a single direction
+		{
+			return 0.0;
+		}
+		for (glm::dvec3& g : gradient_points)
+		{
+			g /= exponent * energy;
+		}
+		layout.pullBack(x, all, gradient_points, gradient);
+		return logOf(energy) / exponent;
+	};
+	std::vector<double> x = layout.variables(points);
+	LbfgsSettings settings;
+	settings.max_iterations = 1000;
+	settings.relative_decrease = 1e-12;
+	settings.seen = seenVariables(layout, seen);
+	const double value = minimise(objective, x, settings);
+	layout.points(x, all);
+	points = all;
+	return value;
+}
 
 constexpr std::size_t kSteps = 100; // progress steps per start: about what the methods need for 64 points
 
@@ -200,6 +357,58 @@ std::size_t stepsOf(const Recipe& recipe)
 	return static_cast<std::size_t>(iterationLimit(recipe.count)) + 1;
 }
 
+// Gradient descent on the recipe's measure; returns the value reached. plane_limit: soft limit of the plane error; 0: none.
+double descend(const Recipe& recipe, const Layout& layout, Points& points, Minimise minimise_what, double plane_limit, int threads,
+			   const Seen& seen)
+{
+	const std::vector<Term> terms = termsOf(recipe.domain, minimise_what);
+	const bool fitted = recipe.weights == WeightRule::fitted && recipe.count <= kMaxFittedDescent;
+	const bool voronoi = recipe.weights != WeightRule::equal && !fitted;
+	Points all;
+	EnergyGradient by_all;
+	const Objective objective = [&](std::span<const double> x, std::span<double> gradient)
+	{
+		if (!layout.points(x, all))
+		{
+			return std::numeric_limits<double>::infinity();
+		}
+		Cells cells;
+		std::vector<double> weights;
+		if (voronoi)
+		{
+			cells = exactCells(recipe.domain, all);
+			weights = cells.integrals;
+		}
+		else
+		{
+			weights = weightsFor(recipe, layout, all);
+		}
+		const double value = valueAndGradient(recipe.domain, terms, plane_limit, all, weights, by_all, threads);
+		if (voronoi) // the fitted weights are stationary, the equal ones constant
+		{
+			addCellGradient(recipe.domain, all, cells.facets, by_all.weights, by_all.points);
+		}
+		layout.pullBack(x, all, by_all.points, gradient);
+		return value;
+	};
+	std::vector<double> x = layout.variables(points);
+	LbfgsSettings settings;
+	settings.max_iterations = iterationLimit(recipe.count);
+	settings.seen = seenVariables(layout, seen);
+	const double value = minimise(objective, x, settings);
+	const bool allowed = layout.points(x, points);
+	assert(allowed);
+	static_cast<void>(allowed);
+	return value;
+}
+
+// The recipe's measure of given points and weights: the objective of descend.
+double measureValue(Domain domain, Minimise minimise_what, std::span<const glm::dvec3> points, std::span<const double> weights)
+{
+	return sumOver(termsOf(domain, minimise_what),
+				   [&](const Term& term) { return term.factor * squaredError(domain, term.ensemble, term.part, points, weights); });
+}
+
 struct Candidate
 {
 	Points points;
@@ -211,11 +420,11 @@ void relaxStart(const Recipe& recipe, const Layout& layout, std::size_t index, P
 {
 	if (recipe.count > 256)
 	{
-		relaxLloyd(recipe, layout, points, seen, 20);
+		relaxLloyd(layout, points, 20, seen);
 	}
 	else if (index % 4 == 0 && recipe.domain != Domain::sphere)
 	{
-		relaxElectro(recipe, layout, points, seen);
+		relaxElectro(layout, points, seen);
 	}
 	else if (index % 4 == 0)
 	{
@@ -311,144 +520,6 @@ std::vector<Candidate> finished(const Recipe& recipe, const Layout& layout, cons
 
 } // namespace
 
-Points centroidsOf(const Layout& layout, const Cells& cells)
-{
-	Points target = cells.centroids;
-	for (glm::dvec3& p : target)
-	{
-		// If one cell covers the whole sphere, its centroid is the centre; any direction will do.
-		p = layout.domain() == Domain::sphere && glm::dot(p, p) < 1e-20 ? glm::dvec3(0, 0, 1) : placeInDomain(layout.domain(), p);
-	}
-	return layout.expand(layout.freePoints(target));
-}
-
-double greatestMove(const Points& from, const Points& to)
-{
-	double greatest = 0.0;
-	for (std::size_t i = 0; i < from.size(); ++i)
-	{
-		greatest = std::max(greatest, glm::distance(from[i], to[i]));
-	}
-	return greatest;
-}
-
-void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points, const Seen& seen)
-{
-	// Tuned on disk 9, 16, 33 and ball 12, 33 (32 starts): 100 rounds lower the plane error by at most 0.4 %, six force steps by
-	// 0.3 %; a single force step raises it by up to 5 %.
-	constexpr int kRounds = 40;
-	constexpr int kForceSteps = 3;
-	const double spacing = 1.0 / std::sqrt(static_cast<double>(points.size()));
-	double step = 0.2 * spacing;
-	Spread spread(recipe, layout, points);
-	Points best = points;
-	double best_error = spread.error();
-	const auto keepBest = [&]
-	{
-		if (spread.error() <= best_error)
-		{
-			best = spread.points();
-			best_error = spread.error();
-		}
-		if (seen)
-		{
-			seen(spread.points());
-		}
-	};
-	for (int round = 0; round < kRounds; ++round)
-	{
-		for (int k = 0; k < kForceSteps; ++k)
-		{
-			if (!spread.repel(step))
-			{
-				break;
-			}
-		}
-		keepBest();
-		// The periodic pull toward the weighted centroids.
-		Points target = centroidsOf(layout, spread.cells());
-		const double move = greatestMove(spread.points(), target);
-		spread.take(std::move(target));
-		keepBest();
-		step = std::clamp(step, 1e-4 * spacing, 0.2 * spacing);
-		if (move < 1e-4 * spacing)
-		{
-			break;
-		}
-	}
-	points = best;
-}
-
-void relaxLloyd(const Recipe& recipe, const Layout& layout, Points& points, const Seen& seen, int max_rounds)
-{
-	for (int round = 0; round < max_rounds; ++round)
-	{
-		const Points target = centroidsOf(layout, exactCells(recipe.domain, points));
-		const double move = greatestMove(points, target);
-		points = target;
-		if (seen)
-		{
-			seen(points);
-		}
-		if (move < 1e-7)
-		{
-			break;
-		}
-	}
-}
-
-double relaxSphereEnergy(const Layout& layout, double exponent, Points& points, const Seen& seen)
-{
-	// Minimises log(energy)/exponent: same minimum, but no overflow or bad scaling for high exponents.
-	Points all;
-	Points gradient_points;
-	const auto objective = [&](std::span<const double> x, std::span<double> gradient)
-	{
-		if (!layout.points(x, all))
-		{
-			return std::numeric_limits<double>::infinity();
-		}
-		gradient_points.assign(all.size(), glm::dvec3(0.0));
-		double energy = 0.0;
-		for (std::size_t i = 0; i < all.size(); ++i)
-		{
-			for (std::size_t j = i + 1; j < all.size(); ++j)
-			{
-				const glm::dvec3 d = all[i] - all[j];
-				const double d2 = glm::dot(d, d);
-				if (d2 == 0.0)
-				{
-					return std::numeric_limits<double>::infinity();
-				}
-				const double term = exponent == 1.0 ? 1.0 / std::sqrt(d2) : powOf(d2, -0.5 * exponent);
-				energy += term;
-				const glm::dvec3 pull = (exponent * term / d2) * d;
-				gradient_points[i] -= pull;
-				gradient_points[j] += pull;
-			}
-		}
-		if (energy == 0.0) // a single direction
-		{
-			return 0.0;
-		}
-		for (glm::dvec3& g : gradient_points)
-		{
-			g /= exponent * energy;
-		}
-		layout.pullBack(x, all, gradient_points, gradient);
-		return logOf(energy) / exponent;
-	};
-	std::vector<double> x = layout.variables(points);
-	LbfgsSettings settings;
-	settings.max_iterations = 1000;
-	settings.relative_decrease = 1e-12;
-	settings.seen = seenVariables(layout, seen);
-	const double value = minimise(objective, x, settings);
-	layout.points(x, all);
-	points = all;
-	return value;
-}
-
 Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)
 {
 	const auto starts = static_cast<std::size_t>(defaultStarts(recipe));
@@ -471,14 +542,14 @@ Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings
 					else if (recipe.method == Method::electro)
 					{
 						// The paper's objective: equal integrals.
-						relaxElectro(recipe, layout, points, seen);
+						relaxElectro(layout, points, seen);
 						values[k] = relativeSpread(exactCells(recipe.domain, points).integrals);
 					}
 					else
 					{
 						if (recipe.method == Method::lloyd)
 						{
-							relaxLloyd(recipe, layout, points, seen);
+							relaxLloyd(layout, points, 400, seen);
 						}
 						else
 						{
@@ -494,56 +565,6 @@ Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings
 		best = values[k] < values[best] ? k : best;
 	}
 	return sets[best];
-}
-
-double descend(const Recipe& recipe, const Layout& layout, Points& points, Minimise minimise_what, double plane_limit, int threads,
-			   const Seen& seen)
-{
-	const std::vector<Term> terms = termsOf(recipe.domain, minimise_what);
-	const bool fitted = recipe.weights == WeightRule::fitted && recipe.count <= kMaxFittedDescent;
-	const bool voronoi = recipe.weights != WeightRule::equal && !fitted;
-	Points all;
-	EnergyGradient by_all;
-	const Objective objective = [&](std::span<const double> x, std::span<double> gradient)
-	{
-		if (!layout.points(x, all))
-		{
-			return std::numeric_limits<double>::infinity();
-		}
-		Cells cells;
-		std::vector<double> weights;
-		if (voronoi)
-		{
-			cells = exactCells(recipe.domain, all);
-			weights = cells.integrals;
-		}
-		else
-		{
-			weights = weightsFor(recipe, layout, all);
-		}
-		const double value = valueAndGradient(recipe.domain, terms, plane_limit, all, weights, by_all, threads);
-		if (voronoi) // the fitted weights are stationary, the equal ones constant
-		{
-			addCellGradient(recipe.domain, all, cells.facets, by_all.weights, by_all.points);
-		}
-		layout.pullBack(x, all, by_all.points, gradient);
-		return value;
-	};
-	std::vector<double> x = layout.variables(points);
-	LbfgsSettings settings;
-	settings.max_iterations = iterationLimit(recipe.count);
-	settings.seen = seenVariables(layout, seen);
-	const double value = minimise(objective, x, settings);
-	const bool allowed = layout.points(x, points);
-	assert(allowed);
-	static_cast<void>(allowed);
-	return value;
-}
-
-double measureValue(Domain domain, Minimise minimise_what, std::span<const glm::dvec3> points, std::span<const double> weights)
-{
-	return sumOver(termsOf(domain, minimise_what),
-				   [&](const Term& term) { return term.factor * squaredError(domain, term.ensemble, term.part, points, weights); });
 }
 
 Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)

@@ -20,12 +20,6 @@
 namespace nook
 {
 
-template <> std::span<const std::string_view> namesOf<TileKind>()
-{
-	static constexpr std::array<std::string_view, 3> names{"points", "even", "random"};
-	return names;
-}
-
 namespace
 {
 
@@ -66,43 +60,27 @@ void checkTileFilters(const TileRecipe& recipe)
 {
 	for (const TileFilter& filter : recipe.filters)
 	{
-		if (stepsOfShares(recipe.size, filter, timeOf(recipe)) > kMaxShareSteps)
-		{
-			throw Error(ExitCode::invalid_input, "filter: found " + filter.name + " with " + std::to_string(filter.taps.size()) +
-													 " taps, expected fewer, or fewer frames, for a tile of this size");
-		}
+		refuseIf(stepsOfShares(recipe.size, filter, timeOf(recipe)) > kMaxShareSteps,
+				 "filter: found " + filter.name + " with " + std::to_string(filter.taps.size()) +
+					 " taps, expected fewer, or fewer frames, for a tile of this size",
+				 ExitCode::invalid_input);
 	}
 }
 
 void checkTime(const TileRecipe& recipe)
 {
-	if (recipe.frames < 1 || recipe.frames > kMaxTileFrames)
-	{
-		throw Error(ExitCode::usage, "frames: expected a whole number from 1 to 64");
-	}
-	if (!(recipe.ema > 0.0 && recipe.ema <= 1.0))
-	{
-		throw Error(ExitCode::usage, "ema: expected a number above 0, at most 1");
-	}
-	if (recipe.filters.empty() && (recipe.robust || recipe.frames > 1))
-	{
-		throw Error(ExitCode::usage, "robust frames: found without a filter, expected what blurs the frames, or none");
-	}
-	if (!recipe.filters.empty() && recipe.kind != TileKind::points)
-	{
-		throw Error(ExitCode::usage, "filter: found with the kind " + std::string(nameOf(recipe.kind)) +
-										 ", expected variants with points of their own");
-	}
-	if (recipe.progressive && recipe.kind != TileKind::points)
-	{
-		throw Error(ExitCode::usage, "progressive: found with the kind " + std::string(nameOf(recipe.kind)) +
-										 ", whose order is the pattern's, expected variants with points of their own");
-	}
-	if (recipe.moves && (recipe.frames < 2 || recipe.frames > recipe.size * recipe.size))
-	{
-		throw Error(ExitCode::usage, "moves: found " + std::to_string(recipe.frames) + " frames, expected from 2 to " +
-										 std::to_string(recipe.size * recipe.size) + ", the pixels of the tile");
-	}
+	refuseIf(recipe.frames < 1 || recipe.frames > kMaxTileFrames, "frames: expected a whole number from 1 to 64");
+	refuseIf(!(recipe.ema > 0.0 && recipe.ema <= 1.0), "ema: expected a number above 0, at most 1");
+	refuseIf(recipe.filters.empty() && (recipe.robust || recipe.frames > 1),
+			 "robust frames: found without a filter, expected what blurs the frames, or none");
+	refuseIf(!recipe.filters.empty() && recipe.kind != TileKind::points,
+			 "filter: found with the kind " + std::string(nameOf(recipe.kind)) + ", expected variants with points of their own");
+	refuseIf(recipe.progressive && recipe.kind != TileKind::points,
+			 "progressive: found with the kind " + std::string(nameOf(recipe.kind)) +
+				 ", whose order is the pattern's, expected variants with points of their own");
+	refuseIf(recipe.moves && (recipe.frames < 2 || recipe.frames > recipe.size * recipe.size),
+			 "moves: found " + std::to_string(recipe.frames) + " frames, expected from 2 to " +
+				 std::to_string(recipe.size * recipe.size) + ", the pixels of the tile");
 }
 
 void roundTile(PatternTile& tile)
@@ -323,59 +301,38 @@ uint64_t tileMemory(const TileRecipe& recipe, const Pattern& base, int threads)
 void checkTileSize(const TileRecipe& recipe, const Pattern& base, uint64_t memory_bytes, int threads)
 {
 	checkTileFilters(recipe);
-	if (base.domain == Domain::slice && !recipe.filters.empty() && stepsOfError(sharesOf(recipe), base.count()) > kMaxShareSteps)
-	{
-		throw Error(ExitCode::invalid_input, "size frames: found " + std::to_string(variantsOf(recipe) * base.count()) +
-												 " slices, expected fewer; or one that moves");
-	}
+	refuseIf(
+		base.domain == Domain::slice && !recipe.filters.empty() && stepsOfError(sharesOf(recipe), base.count()) > kMaxShareSteps,
+		"size frames: found " + std::to_string(variantsOf(recipe) * base.count()) + " slices, expected fewer; or one that moves",
+		ExitCode::invalid_input);
 	const uint64_t need = memory_bytes > 0 ? tileMemory(recipe, base, threads) : 0;
-	if (need > memory_bytes)
-	{
-		throw Error(ExitCode::runtime, "memory: found a need of about " + needText(need) + " for " +
-										   std::to_string(variantsOf(recipe) * base.count()) + " samples, expected at most " +
-										   capText(memory_bytes) +
-										   (recipe.frames > 1 && !recipe.moves ? "; or a tile that moves" : ""));
-	}
+	refuseIf(need > memory_bytes,
+			 "memory: found a need of about " + needText(need) + " for " + std::to_string(variantsOf(recipe) * base.count()) +
+				 " samples, expected at most " + capText(memory_bytes) +
+				 (recipe.frames > 1 && !recipe.moves ? "; or a tile that moves" : ""),
+			 ExitCode::runtime);
 }
 
 void checkTileRecipe(const TileRecipe& recipe, Domain domain)
 {
-	if (recipe.size < 2 || recipe.size > kMaxTileSize)
-	{
-		throw Error(ExitCode::usage, "size: expected a whole number from 2 to 128");
-	}
-	if (recipe.size > 8 && recipe.filters.empty())
-	{
-		throw Error(ExitCode::usage, "size: found " + std::to_string(recipe.size) + ", expected at most 8, or a filter");
-	}
+	refuseIf(recipe.size < 2 || recipe.size > kMaxTileSize, "size: expected a whole number from 2 to 128");
+	refuseIf(recipe.size > 8 && recipe.filters.empty(),
+			 "size: found " + std::to_string(recipe.size) + ", expected at most 8, or a filter");
 	checkTime(recipe);
-	if (recipe.starts < 0 || recipe.starts > 1000)
-	{
-		throw Error(ExitCode::usage, "starts: expected a whole number from 1 to 1000");
-	}
-	if (recipe.lambda != -1.0 && !(recipe.lambda > 0.0 && recipe.lambda <= 1e6))
-	{
-		throw Error(ExitCode::usage, "lambda: expected a number above 0, at most 1e6");
-	}
-	if (recipe.kind != TileKind::points && (recipe.lambda != -1.0 || recipe.starts != 0))
-	{
-		throw Error(ExitCode::usage, "lambda starts: the kinds even and random are not optimised; expected points");
-	}
-	if (domain == Domain::sphere)
-	{
-		throw Error(ExitCode::unsupported,
-					"a tile of sphere patterns: rotations leave no error on the sphere; expected disk, ball or hemisphere");
-	}
-	if (domain == Domain::slice && recipe.kind != TileKind::points)
-	{
-		throw Error(ExitCode::unsupported, "kind " + std::string(nameOf(recipe.kind)) +
-											   ": slices have azimuths and jitters of their own; expected points");
-	}
-	if (domain == Domain::ball && recipe.kind == TileKind::even)
-	{
-		throw Error(ExitCode::unsupported,
-					"kind even: rotations about the view axis are for disk and hemisphere; expected points or random");
-	}
+	refuseIf(recipe.starts < 0 || recipe.starts > 1000, "starts: expected a whole number from 1 to 1000");
+	refuseIf(recipe.lambda != -1.0 && !(recipe.lambda > 0.0 && recipe.lambda <= 1e6),
+			 "lambda: expected a number above 0, at most 1e6");
+	refuseIf(recipe.kind != TileKind::points && (recipe.lambda != -1.0 || recipe.starts != 0),
+			 "lambda starts: the kinds even and random are not optimised; expected points");
+	refuseIf(domain == Domain::sphere,
+			 "a tile of sphere patterns: rotations leave no error on the sphere; expected disk, ball or hemisphere",
+			 ExitCode::unsupported);
+	refuseIf(domain == Domain::slice && recipe.kind != TileKind::points,
+			 "kind " + std::string(nameOf(recipe.kind)) + ": slices have azimuths and jitters of their own; expected points",
+			 ExitCode::unsupported);
+	refuseIf(domain == Domain::ball && recipe.kind == TileKind::even,
+			 "kind even: rotations about the view axis are for disk and hemisphere; expected points or random",
+			 ExitCode::unsupported);
 }
 
 std::string tileCommand(const TileRecipe& recipe, const std::string& pattern_file)

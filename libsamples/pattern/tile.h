@@ -18,7 +18,7 @@ enum class TileKind
 	even,   // the base pattern rotated by even steps
 	random, // the base pattern reflected about random directions: the paper's texture
 };
-template <> std::span<const std::string_view> namesOf<TileKind>();
+template <> inline constexpr std::array<std::string_view, 3> kNamesOf<TileKind>{"points", "even", "random"};
 
 struct TileRecipe
 {

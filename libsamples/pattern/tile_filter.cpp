@@ -121,10 +121,8 @@ std::pair<std::string, double> nameAndShare(const std::string& text)
 {
 	const std::size_t at = text.rfind('@');
 	const std::optional<double> share = at != std::string::npos ? numberOf(text.substr(at + 1)) : 1.0;
-	if (!share || !(*share > 0.0 && *share <= 1e6))
-	{
-		throw Error(ExitCode::usage, "filter: found '" + text + "', expected a share above 0, at most 1e6, after @");
-	}
+	refuseIf(!share || !(*share > 0.0 && *share <= 1e6),
+			 "filter: found '" + text + "', expected a share above 0, at most 1e6, after @");
 	return {text.substr(0, at), *share};
 }
 

@@ -286,37 +286,16 @@ std::vector<double> equalisingPowers(Domain domain, std::span<const glm::dvec3> 
 			break;
 		}
 	}
-	if (!(residual.error < 1e-9))
-	{
-		throw Error(ExitCode::runtime, "equal cells: Newton's method stopped at a relative error of " +
-										   std::to_string(residual.error) + ", expected 1e-9; are there duplicate points?");
-	}
+	refuseIf(!(residual.error < 1e-9),
+			 "equal cells: Newton's method stopped at a relative error of " + std::to_string(residual.error) +
+				 ", expected 1e-9; are there duplicate points?",
+			 ExitCode::runtime);
 	const double mean = sumOver(powers, [&powers](double power) { return power / static_cast<double>(powers.size()); });
 	for (double& power : powers)
 	{
 		power -= mean;
 	}
 	return powers;
-}
-
-void relaxEqual(const Layout& layout, Points& points, int rounds, const Seen& seen)
-{
-	for (int round = 0; round < rounds; ++round)
-	{
-		const std::vector<double> powers = equalisingPowers(layout.domain(), points);
-		const Cells cells = exactCells(layout.domain(), points, powers);
-		const Points target = centroidsOf(layout, cells);
-		const double move = greatestMove(points, target);
-		points = target;
-		if (seen)
-		{
-			seen(points);
-		}
-		if (move < 1e-6)
-		{
-			break;
-		}
-	}
 }
 
 } // namespace nook

@@ -75,11 +75,6 @@ private:
 	const AovSettings& m_settings;
 };
 
-uint64_t sumOf(const std::vector<uint64_t>& rows)
-{
-	return std::accumulate(rows.begin(), rows.end(), uint64_t{0});
-}
-
 // Shades the upper left pixel of every cell of `every_px`; returns the number of containing volumes.
 uint64_t evaluate(const Pixels& pixels, const AovSettings& settings, const RunSettings& run, PicturePlane& cells)
 {
@@ -96,7 +91,7 @@ uint64_t evaluate(const Pixels& pixels, const AovSettings& settings, const RunSe
 		progress.finishOne();
 	};
 	parallelFor(rows, run.threads, row);
-	return sumOf(held);
+	return std::accumulate(held.begin(), held.end(), uint64_t{0});
 }
 
 // Reconstructs all pixels from the cells (aov_sparse.glsl); -1 where that fails.
@@ -152,7 +147,7 @@ VolumeCount evaluateAlone(const Pixels& pixels, const GBuffer& gbuffer, const Ru
 		}
 	};
 	parallelFor(rows, run.threads, row);
-	return {sumOf(alone), sumOf(held)};
+	return {std::accumulate(alone.begin(), alone.end(), uint64_t{0}), std::accumulate(held.begin(), held.end(), uint64_t{0})};
 }
 
 PassTime timeOf(const std::string& name, const std::function<void()>& draw, int repetitions)

@@ -100,12 +100,10 @@ public:
 	{
 		int most = 0;
 		glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-		if (bytes.size() / texel > static_cast<std::size_t>(most))
-		{
-			throw Error(ExitCode::unsupported, "OpenGL: found " + std::to_string(bytes.size() / texel) +
-												   " corners, polygons or clusters of volumes, expected at most " +
-												   std::to_string(most));
-		}
+		refuseIf(bytes.size() / texel > static_cast<std::size_t>(most),
+				 "OpenGL: found " + std::to_string(bytes.size() / texel) +
+					 " corners, polygons or clusters of volumes, expected at most " + std::to_string(most),
+				 ExitCode::unsupported);
 		glBindBuffer(GL_TEXTURE_BUFFER, m_buffer);
 		glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max(bytes.size(), texel)), nullptr, GL_STATIC_DRAW);
 		glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
@@ -186,88 +184,10 @@ GlName glFrameOf(std::span<const unsigned> colours, unsigned depth)
 	{
 		glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
 	}
-	if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-	{
-		throw Error(ExitCode::unsupported, "OpenGL: found no pictures of that format to draw into, expected some");
-	}
+	refuseIf(glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE,
+			 "OpenGL: found no pictures of that format to draw into, expected some", ExitCode::unsupported);
 	return name;
 }
-
-// Render targets for volumes (one pixel per cell, or all pixels) and the resulting visibility.
-
-class AovPicture
-{
-public:
-	// Throws Error (unsupported) for a skewed camera.
-	AovPicture(const GBuffer& gbuffer, const nook_volumes::Header& header, const AovSettings& settings, int every_px);
-
-	const nook_volumes::Frame& frame() const
-	{
-		return m_frame;
-	}
-	const GlTexture& result() const
-	{
-		return *m_result;
-	}
-
-	// Binds the uniform block and this picture's textures.
-	void bind() const;
-
-	// Draws the depth buffer from the bound linear depths; leaves the depth test enabled and depth writes disabled.
-	void drawDepth(unsigned program) const;
-
-	// Call before drawing volumes: clears the sums or bits and draws into them.
-	void beginVolumes() const;
-
-	// Draws into the visibility from here on.
-	void useResult() const;
-
-private:
-	bool m_mask;
-	int m_every_px;
-	int m_columns;
-	int m_rows;
-	nook_volumes::Camera m_camera;
-	nook_volumes::Frame m_frame;
-	GlName m_depth_stencil;
-	std::vector<GlName> m_sums;
-	std::unique_ptr<GlTexture> m_result;
-	GlName m_volume_frame, m_result_frame;
-	GlName m_block;
-};
-
-// Packed volumes on the GPU, and draw calls for their clusters.
-
-class GlVolumes
-{
-public:
-	// The volumes of one frame. Keeps references to both arguments, which must outlive it. Throws like GlArray.
-	GlVolumes(const PackedVolumes& packed, const nook_volumes::Frame& frame, const AovGlOptions& options);
-
-	// Call before drawing: binds the shaders' arrays and the vertex attributes.
-	void bind() const;
-
-	// Uses the current state and program.
-	void draw(const std::vector<std::size_t>& clusters) const;
-
-	// True if the depth bounds test is available and requested; the caller must then enable it around draw().
-	bool hasDepthBounds() const
-	{
-		return m_bounds;
-	}
-
-private:
-	void drawOneByOne(const std::vector<std::size_t>& clusters) const;
-	void drawTogether(const std::vector<std::size_t>& clusters) const;
-
-	const PackedVolumes& m_packed;
-	const nook_volumes::Frame& m_frame;
-	AovGlOptions m_options;
-	std::unique_ptr<GlArray> m_corners, m_polygons, m_clusters, m_points, m_indices, m_numbers;
-	bool m_bounds = false;
-	GlName m_vertices;
-	GlName m_commands;
-};
 
 // Converts linear depth to depth buffer values.
 constexpr const char* kDepthPass = R"(#version 330 core
@@ -305,6 +225,236 @@ template <class Item> std::span<const std::byte> bytesOf(const std::vector<Item>
 {
 	return std::as_bytes(std::span(items));
 }
+
+// Render targets for volumes (one pixel per cell, or all pixels) and the resulting visibility.
+
+class AovPicture
+{
+public:
+	// Throws Error (unsupported) for a skewed camera.
+	AovPicture(const GBuffer& gbuffer, const nook_volumes::Header& header, const AovSettings& settings, int every_px)
+		: m_mask(settings.mask), m_every_px(every_px), m_columns((gbuffer.width_px + every_px - 1) / every_px),
+		  m_rows((gbuffer.height_px + every_px - 1) / every_px), m_camera(cameraOf(gbuffer, every_px)),
+		  m_block(glGenBuffers, glDeleteBuffers)
+	{
+		const char* const problem = m_frame.set(header, m_camera);
+		if (problem != nullptr)
+		{
+			throw Error(ExitCode::unsupported, std::string("camera: found ") + problem +
+												   ", expected a right-handed one, column by column, without a skew");
+		}
+		m_depth_stencil = targetOf(GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, m_columns, m_rows);
+		std::vector<unsigned> sums;
+		for (int first = 0; first < (settings.mask ? settings.directions : 1); first += 128)
+		{
+			// Above 128 directions there are two targets, the second with all four channels; unused ones stay 0.
+			m_sums.push_back(volumeTarget(settings, first > 0 ? 128 : settings.directions, m_columns, m_rows));
+			sums.push_back(m_sums.back());
+		}
+		m_result = std::make_unique<GlTexture>(PictureShape{PictureFormat::scalar, m_columns, m_rows});
+		m_volume_frame = glFrameOf(sums, m_depth_stencil);
+		m_result_frame = glFrameOf(std::array{m_result->name()}, m_depth_stencil);
+		glBindBuffer(GL_UNIFORM_BUFFER, m_block);
+		glBufferData(GL_UNIFORM_BUFFER, sizeof m_frame.block, &m_frame.block, GL_STATIC_DRAW);
+	}
+
+	const nook_volumes::Frame& frame() const
+	{
+		return m_frame;
+	}
+	const GlTexture& result() const
+	{
+		return *m_result;
+	}
+
+	// Binds the uniform block and this picture's textures.
+	void bind() const
+	{
+		glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
+		bindTexture(5, m_sums[0]);
+		bindTexture(6, m_sums.back());
+		bindTexture(7, m_result->name());
+	}
+
+	// Draws the depth buffer from the bound linear depths; leaves the depth test enabled and depth writes disabled.
+	void drawDepth(unsigned program) const
+	{
+		const double* const p = m_camera.projection;
+		glBindFramebuffer(GL_FRAMEBUFFER, m_volume_frame);
+		glViewport(0, 0, m_columns, m_rows);
+		glUseProgram(program);
+		glUniform4f(glGetUniformLocation(program, "nook_z"), static_cast<float>(-p[10]), static_cast<float>(p[14]),
+					static_cast<float>(-p[11]), static_cast<float>(p[15]));
+		glUniform1i(glGetUniformLocation(program, "nook_every"), m_every_px);
+		glDisable(GL_BLEND);
+		glDisable(GL_CULL_FACE);
+		glEnable(GL_DEPTH_TEST);
+		glDepthFunc(GL_ALWAYS);
+		glDepthMask(GL_TRUE);
+		glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+		glDrawArrays(GL_TRIANGLES, 0, 3);
+		glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+		glDepthMask(GL_FALSE);
+	}
+
+	// Call before drawing volumes: clears the sums or bits and draws into them.
+	void beginVolumes() const
+	{
+		glBindFramebuffer(GL_FRAMEBUFFER, m_volume_frame);
+		glViewport(0, 0, m_columns, m_rows);
+		const std::array<float, 4> none{};
+		const std::array<unsigned, 4> no_bits{};
+		for (std::size_t i = 0; i < m_sums.size(); ++i)
+		{
+			if (m_mask)
+			{
+				glClearBufferuiv(GL_COLOR, static_cast<int>(i), no_bits.data());
+				continue;
+			}
+			glClearBufferfv(GL_COLOR, static_cast<int>(i), none.data());
+		}
+	}
+
+	// Draws into the visibility from here on.
+	void useResult() const
+	{
+		glBindFramebuffer(GL_FRAMEBUFFER, m_result_frame);
+		glViewport(0, 0, m_columns, m_rows);
+	}
+
+private:
+	bool m_mask;
+	int m_every_px;
+	int m_columns;
+	int m_rows;
+	nook_volumes::Camera m_camera;
+	nook_volumes::Frame m_frame;
+	GlName m_depth_stencil;
+	std::vector<GlName> m_sums;
+	std::unique_ptr<GlTexture> m_result;
+	GlName m_volume_frame, m_result_frame;
+	GlName m_block;
+};
+
+// Packed volumes on the GPU, and draw calls for their clusters.
+
+class GlVolumes
+{
+public:
+	// The volumes of one frame. Keeps references to both arguments, which must outlive it. Throws like GlArray.
+	GlVolumes(const PackedVolumes& packed, const nook_volumes::Frame& frame, const AovGlOptions& options)
+		: m_packed(packed), m_frame(frame), m_options(options), m_vertices(glGenVertexArrays, glDeleteVertexArrays)
+	{
+		const auto seen = mapped(packed.clusters, [&](const nook_volumes::Cluster& cluster) { return frame.seen(cluster); });
+		m_corners = std::make_unique<GlArray>(bytesOf(packed.corners), GL_RGBA16UI, 8);
+		m_polygons = std::make_unique<GlArray>(bytesOf(packed.polygons), GL_RG32UI, 8);
+		m_clusters = std::make_unique<GlArray>(bytesOf(seen), GL_RGBA32UI, 16);
+		m_bounds = options.depth_bounds && !options.storage_buffers && epoxy_has_gl_extension("GL_EXT_depth_bounds_test");
+		glBindVertexArray(m_vertices);
+		if (options.prisms)
+		{
+			m_points = std::make_unique<GlArray>(bytesOf(packed.vertices), GL_RGBA16UI, 8);
+			m_indices = std::make_unique<GlArray>(bytesOf(packed.indices), GL_R16UI, 2);
+			glBindBuffer(GL_ARRAY_BUFFER, m_points->buffer());
+			glEnableVertexAttribArray(1);
+			glVertexAttribIPointer(1, 4, GL_UNSIGNED_SHORT, 8, nullptr);
+			glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, m_indices->buffer());
+		}
+		if (options.storage_buffers)
+		{
+			std::vector<int> numbers(packed.clusters.size());
+			std::iota(numbers.begin(), numbers.end(), 0);
+			m_numbers = std::make_unique<GlArray>(bytesOf(numbers), GL_R32I, 4);
+			m_commands = GlName(glGenBuffers, glDeleteBuffers);
+			glBindBuffer(GL_ARRAY_BUFFER, m_numbers->buffer());
+			glEnableVertexAttribArray(0);
+			glVertexAttribIPointer(0, 1, GL_INT, 4, nullptr);
+			glVertexAttribDivisor(0, 1);
+		}
+	}
+
+	// Call before drawing: binds the shaders' arrays and the vertex attributes.
+	void bind() const
+	{
+		glBindVertexArray(m_vertices);
+		const std::array<const GlArray*, 3> arrays{m_corners.get(), m_polygons.get(), m_clusters.get()};
+		for (unsigned i = 0; i < arrays.size(); ++i)
+		{
+			arrays[i]->bind(i, m_options.storage_buffers);
+		}
+	}
+
+	// Uses the current state and program.
+	void draw(const std::vector<std::size_t>& clusters) const
+	{
+		m_options.storage_buffers ? drawTogether(clusters) : drawOneByOne(clusters);
+	}
+
+	// True if the depth bounds test is available and requested; the caller must then enable it around draw().
+	bool hasDepthBounds() const
+	{
+		return m_bounds;
+	}
+
+private:
+	void drawOneByOne(const std::vector<std::size_t>& clusters) const
+	{
+		for (const std::size_t i : clusters)
+		{
+			const nook_volumes::Cluster& cluster = m_packed.clusters[i];
+			glVertexAttribI1i(0, static_cast<int>(i));
+			if (m_bounds)
+			{
+				double least = 0.0;
+				double most = 1.0;
+				m_frame.depthBounds(cluster, least, most);
+				glDepthBoundsEXT(least, most);
+			}
+			if (m_options.prisms)
+			{
+				const auto* const first = reinterpret_cast<const void*>(2 * static_cast<std::uintptr_t>(cluster.first_index));
+				glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<int>(cluster.index_count), GL_UNSIGNED_SHORT, first,
+										 static_cast<int>(cluster.first_vertex));
+				continue;
+			}
+			glDrawArrays(GL_TRIANGLES, static_cast<int>(12 * cluster.first_corner), static_cast<int>(12 * cluster.corner_count));
+		}
+	}
+
+	// A single draw call: cluster numbers are an instanced attribute, with one instance per cluster.
+	void drawTogether(const std::vector<std::size_t>& clusters) const
+	{
+		std::vector<unsigned> commands; // in the layout of glMultiDrawArraysIndirect and glMultiDrawElementsIndirect
+		for (const std::size_t i : clusters)
+		{
+			const nook_volumes::Cluster& cluster = m_packed.clusters[i];
+			const auto number = static_cast<unsigned>(i);
+			if (m_options.prisms)
+			{
+				commands.insert(commands.end(), {cluster.index_count, 1U, cluster.first_index, cluster.first_vertex, number});
+				continue;
+			}
+			commands.insert(commands.end(), {12 * cluster.corner_count, 1U, 12 * cluster.first_corner, number});
+		}
+		glBindBuffer(GL_DRAW_INDIRECT_BUFFER, m_commands);
+		glBufferData(GL_DRAW_INDIRECT_BUFFER, static_cast<GLsizeiptr>(sizeof(unsigned) * commands.size()), commands.data(),
+					 GL_STREAM_DRAW);
+		if (m_options.prisms)
+		{
+			glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT, nullptr, static_cast<int>(clusters.size()), 0);
+			return;
+		}
+		glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, static_cast<int>(clusters.size()), 0);
+	}
+
+	const PackedVolumes& m_packed;
+	const nook_volumes::Frame& m_frame;
+	AovGlOptions m_options;
+	std::unique_ptr<GlArray> m_corners, m_polygons, m_clusters, m_points, m_indices, m_numbers;
+	bool m_bounds = false;
+	GlName m_vertices;
+	GlName m_commands;
+};
 
 class Drawer
 {
@@ -354,7 +504,7 @@ public:
 
 	std::vector<float> visibility() const
 	{
-		return readScalar((m_whole ? m_whole : m_picture)->result());
+		return readFloats((m_whole ? m_whole : m_picture)->result());
 	}
 
 	AovCounts counts() const
@@ -525,189 +675,14 @@ private:
 	AovCounts m_counts;
 };
 
-AovPicture::AovPicture(const GBuffer& gbuffer, const nook_volumes::Header& header, const AovSettings& settings, int every_px)
-	: m_mask(settings.mask), m_every_px(every_px), m_columns((gbuffer.width_px + every_px - 1) / every_px),
-	  m_rows((gbuffer.height_px + every_px - 1) / every_px), m_camera(cameraOf(gbuffer, every_px)),
-	  m_block(glGenBuffers, glDeleteBuffers)
-{
-	const char* const problem = m_frame.set(header, m_camera);
-	if (problem != nullptr)
-	{
-		throw Error(ExitCode::unsupported,
-					std::string("camera: found ") + problem + ", expected a right-handed one, column by column, without a skew");
-	}
-	m_depth_stencil = targetOf(GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, m_columns, m_rows);
-	std::vector<unsigned> sums;
-	for (int first = 0; first < (settings.mask ? settings.directions : 1); first += 128)
-	{
-		// Above 128 directions there are two targets, the second with all four channels; unused ones stay 0.
-		m_sums.push_back(volumeTarget(settings, first > 0 ? 128 : settings.directions, m_columns, m_rows));
-		sums.push_back(m_sums.back());
-	}
-	m_result = std::make_unique<GlTexture>(PictureShape{PictureFormat::scalar, m_columns, m_rows});
-	m_volume_frame = glFrameOf(sums, m_depth_stencil);
-	m_result_frame = glFrameOf(std::array{m_result->name()}, m_depth_stencil);
-	glBindBuffer(GL_UNIFORM_BUFFER, m_block);
-	glBufferData(GL_UNIFORM_BUFFER, sizeof m_frame.block, &m_frame.block, GL_STATIC_DRAW);
-}
-
-void AovPicture::bind() const
-{
-	glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
-	bindTexture(5, m_sums[0]);
-	bindTexture(6, m_sums.back());
-	bindTexture(7, m_result->name());
-}
-
-void AovPicture::drawDepth(unsigned program) const
-{
-	const double* const p = m_camera.projection;
-	glBindFramebuffer(GL_FRAMEBUFFER, m_volume_frame);
-	glViewport(0, 0, m_columns, m_rows);
-	glUseProgram(program);
-	glUniform4f(glGetUniformLocation(program, "nook_z"), static_cast<float>(-p[10]), static_cast<float>(p[14]),
-				static_cast<float>(-p[11]), static_cast<float>(p[15]));
-	glUniform1i(glGetUniformLocation(program, "nook_every"), m_every_px);
-	glDisable(GL_BLEND);
-	glDisable(GL_CULL_FACE);
-	glEnable(GL_DEPTH_TEST);
-	glDepthFunc(GL_ALWAYS);
-	glDepthMask(GL_TRUE);
-	glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-	glDrawArrays(GL_TRIANGLES, 0, 3);
-	glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-	glDepthMask(GL_FALSE);
-}
-
-void AovPicture::beginVolumes() const
-{
-	glBindFramebuffer(GL_FRAMEBUFFER, m_volume_frame);
-	glViewport(0, 0, m_columns, m_rows);
-	const std::array<float, 4> none{};
-	const std::array<unsigned, 4> no_bits{};
-	for (std::size_t i = 0; i < m_sums.size(); ++i)
-	{
-		if (m_mask)
-		{
-			glClearBufferuiv(GL_COLOR, static_cast<int>(i), no_bits.data());
-			continue;
-		}
-		glClearBufferfv(GL_COLOR, static_cast<int>(i), none.data());
-	}
-}
-
-void AovPicture::useResult() const
-{
-	glBindFramebuffer(GL_FRAMEBUFFER, m_result_frame);
-	glViewport(0, 0, m_columns, m_rows);
-}
-
-GlVolumes::GlVolumes(const PackedVolumes& packed, const nook_volumes::Frame& frame, const AovGlOptions& options)
-	: m_packed(packed), m_frame(frame), m_options(options), m_vertices(glGenVertexArrays, glDeleteVertexArrays)
-{
-	const auto seen = mapped(packed.clusters, [&](const nook_volumes::Cluster& cluster) { return frame.seen(cluster); });
-	m_corners = std::make_unique<GlArray>(bytesOf(packed.corners), GL_RGBA16UI, 8);
-	m_polygons = std::make_unique<GlArray>(bytesOf(packed.polygons), GL_RG32UI, 8);
-	m_clusters = std::make_unique<GlArray>(bytesOf(seen), GL_RGBA32UI, 16);
-	m_bounds = options.depth_bounds && !options.storage_buffers && epoxy_has_gl_extension("GL_EXT_depth_bounds_test");
-	glBindVertexArray(m_vertices);
-	if (options.prisms)
-	{
-		m_points = std::make_unique<GlArray>(bytesOf(packed.vertices), GL_RGBA16UI, 8);
-		m_indices = std::make_unique<GlArray>(bytesOf(packed.indices), GL_R16UI, 2);
-		glBindBuffer(GL_ARRAY_BUFFER, m_points->buffer());
-		glEnableVertexAttribArray(1);
-		glVertexAttribIPointer(1, 4, GL_UNSIGNED_SHORT, 8, nullptr);
-		glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, m_indices->buffer());
-	}
-	if (options.storage_buffers)
-	{
-		std::vector<int> numbers(packed.clusters.size());
-		std::iota(numbers.begin(), numbers.end(), 0);
-		m_numbers = std::make_unique<GlArray>(bytesOf(numbers), GL_R32I, 4);
-		m_commands = GlName(glGenBuffers, glDeleteBuffers);
-		glBindBuffer(GL_ARRAY_BUFFER, m_numbers->buffer());
-		glEnableVertexAttribArray(0);
-		glVertexAttribIPointer(0, 1, GL_INT, 4, nullptr);
-		glVertexAttribDivisor(0, 1);
-	}
-}
-
-void GlVolumes::bind() const
-{
-	glBindVertexArray(m_vertices);
-	const std::array<const GlArray*, 3> arrays{m_corners.get(), m_polygons.get(), m_clusters.get()};
-	for (unsigned i = 0; i < arrays.size(); ++i)
-	{
-		arrays[i]->bind(i, m_options.storage_buffers);
-	}
-}
-
-void GlVolumes::draw(const std::vector<std::size_t>& clusters) const
-{
-	m_options.storage_buffers ? drawTogether(clusters) : drawOneByOne(clusters);
-}
-
-void GlVolumes::drawOneByOne(const std::vector<std::size_t>& clusters) const
-{
-	for (const std::size_t i : clusters)
-	{
-		const nook_volumes::Cluster& cluster = m_packed.clusters[i];
-		glVertexAttribI1i(0, static_cast<int>(i));
-		if (m_bounds)
-		{
-			double least = 0.0;
-			double most = 1.0;
-			m_frame.depthBounds(cluster, least, most);
-			glDepthBoundsEXT(least, most);
-		}
-		if (m_options.prisms)
-		{
-			const auto* const first = reinterpret_cast<const void*>(2 * static_cast<std::uintptr_t>(cluster.first_index));
-			glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<int>(cluster.index_count), GL_UNSIGNED_SHORT, first,
-									 static_cast<int>(cluster.first_vertex));
-			continue;
-		}
-		glDrawArrays(GL_TRIANGLES, static_cast<int>(12 * cluster.first_corner), static_cast<int>(12 * cluster.corner_count));
-	}
-}
-
-// A single draw call: cluster numbers are an instanced attribute, with one instance per cluster.
-void GlVolumes::drawTogether(const std::vector<std::size_t>& clusters) const
-{
-	std::vector<unsigned> commands; // in the layout of glMultiDrawArraysIndirect and glMultiDrawElementsIndirect
-	for (const std::size_t i : clusters)
-	{
-		const nook_volumes::Cluster& cluster = m_packed.clusters[i];
-		const auto number = static_cast<unsigned>(i);
-		if (m_options.prisms)
-		{
-			commands.insert(commands.end(), {cluster.index_count, 1U, cluster.first_index, cluster.first_vertex, number});
-			continue;
-		}
-		commands.insert(commands.end(), {12 * cluster.corner_count, 1U, 12 * cluster.first_corner, number});
-	}
-	glBindBuffer(GL_DRAW_INDIRECT_BUFFER, m_commands);
-	glBufferData(GL_DRAW_INDIRECT_BUFFER, static_cast<GLsizeiptr>(sizeof(unsigned) * commands.size()), commands.data(),
-				 GL_STREAM_DRAW);
-	if (m_options.prisms)
-	{
-		glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT, nullptr, static_cast<int>(clusters.size()), 0);
-		return;
-	}
-	glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, static_cast<int>(clusters.size()), 0);
-}
-
 } // namespace
 
 AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSettings& settings, const DrawSettings& drawing,
 				  const AovGlOptions& options)
 {
 	const GlContext context(GlApi::core, drawing.gl_device);
-	if (options.storage_buffers && !context.hasCompute())
-	{
-		throw Error(ExitCode::unsupported, "OpenGL: found no storage buffers in " + context.renderer() + ", expected OpenGL 4.3");
-	}
+	refuseIf(options.storage_buffers && !context.hasCompute(),
+			 "OpenGL: found no storage buffers in " + context.renderer() + ", expected OpenGL 4.3", ExitCode::unsupported);
 	Drawer drawer(gbuffer, volumes, settings, options);
 	const bool timer = !context.isSoftware();
 	warmUp(context, drawing.repetitions, [&] { drawer.draw(timer); });

@@ -20,12 +20,6 @@
 namespace nook
 {
 
-template <> std::span<const std::string_view> namesOf<VolumeRecipe>()
-{
-	static constexpr std::array<std::string_view, 3> kNames{"triangles", "built", "masks"};
-	return kNames;
-}
-
 namespace
 {
 
@@ -173,12 +167,10 @@ void emitVolumes(AssetEmission& made)
 {
 	const AovSettings& aov = made.settings.aov;
 	const std::string method(volumeRow(aov.mask).name);
-	const std::string target(glslTargets()[static_cast<std::size_t>(made.target)]);
-	if (!drawsVolumes(made.target, aov.mask))
-	{
-		throw Error(ExitCode::unsupported, "glsl: found " + target + " with " + method +
-											   " as the pick, expected 330, 430 or vulkan, or methods without it");
-	}
+	const std::string target(nameOf(made.target));
+	refuseIf(!drawsVolumes(made.target, aov.mask),
+			 "glsl: found " + target + " with " + method + " as the pick, expected 330, 430 or vulkan, or methods without it",
+			 ExitCode::unsupported);
 	constexpr const char* kModule = "nook_aov.glsl";
 	std::string command = "nook emit --methods " + method + (made.device_depth ? " --depth device" : "");
 	command += aov.mask ? " --directions " + std::to_string(aov.directions) : "";

@@ -25,7 +25,7 @@ enum class VolumeRecipe
 	built,     // merged, dropped, trimmed to kBuiltTrim, with a curve fitted to the level
 	masks,     // merged and dropped, as far as the reference's rays reach (distance = radius)
 };
-template <> std::span<const std::string_view> namesOf<VolumeRecipe>();
+template <> inline constexpr std::array<std::string_view, 3> kNamesOf<VolumeRecipe>{"triangles", "built", "masks"};
 inline constexpr double kBuiltTrim = 0.15;
 
 // How an asset is made and drawn; each kind reads its own settings.

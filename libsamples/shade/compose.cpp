@@ -130,32 +130,6 @@ Shaded drawScreen(const ComposeSettings& settings, const ShadeSamples& samples, 
 					   : shadeOnCpu(gbuffer, samples, settings.shade, run, settings.drawing);
 }
 
-ShadeSamples checkedSamples(const ComposeSettings& settings, const RunSettings& run)
-{
-	ShadeSamples samples = shadeSamples(settings.pattern, settings.frame, settings.shade, run);
-	if (settings.shade.filter == ShadeFilter::window && samples.size == 1)
-	{
-		const bool given = !settings.pattern.empty();
-		throw Error(ExitCode::usage, "--filter: found 'window' with " +
-										 (given ? settings.pattern : "--method " + std::string(nameOf(settings.shade.method))) +
-										 ", whose samples have no window, expected " +
-										 (given ? "--pattern with a tile" : "another filter"));
-	}
-	checkDebug(settings.shade, samples);
-	return samples;
-}
-
-Shaded drawVolumes(const ComposeSettings& settings, const GBuffer& gbuffer, const RunSettings& run, Composed& composed)
-{
-	const VolumeSet volumes = readVolumes(settings.volumes);
-	AovShaded drawn = settings.gl ? aovOnGl(gbuffer, volumes, settings.aov, settings.drawing)
-								  : aovOnCpu(gbuffer, volumes, settings.aov, run, settings.drawing);
-	composed.volumes = drawn.counts;
-	composed.distance_m = volumes.distance_m;
-	composed.ray_distance_m = volumes.ray_distance_m;
-	return std::move(drawn.shaded);
-}
-
 // Without --pattern.
 Pattern defaultPattern(const ShadeSettings& settings, const RunSettings& run)
 {
@@ -205,6 +179,57 @@ PatternTile tileFor(const std::string& path, const ShadeSettings& settings, cons
 					std::string(nameOf(domain)) + " for --method " + std::string(nameOf(settings.method)));
 	}
 	return tile;
+}
+
+// The samples of a pattern or a tile, or nook's own without a path. Throws Error if the file does not suit method or frame.
+ShadeSamples shadeSamples(const std::string& path, const std::optional<int>& frame, const ShadeSettings& settings,
+						  const RunSettings& run)
+{
+	const bool tile_alone = mayTakeTile(settings.method) && !path.empty();
+	refuseIf(frame && (path.empty() || !(takesPattern(settings.method) || tile_alone)),
+			 "--frame: found without a tile, expected --pattern with one made by nook tile --frames");
+	if (!takesPattern(settings.method) && !tile_alone)
+	{
+		return ownSamples(settings);
+	}
+	PatternTile tile = tileFor(path, settings, run);
+	refuseIf(frame && tile.frames == 1, path + ": frames: found one, expected several for --frame", ExitCode::invalid_input);
+	if (settings.volume.paired)
+	{
+		for (Pattern& variant : tile.variants)
+		{
+			variant = pairedPattern(variant);
+		}
+	}
+	ShadeSamples samples = samplesOf(settings.method, tile.variants, layersOf(tile));
+	samples.variant = variantOfFrame(tile, frame.value_or(0));
+	return samples;
+}
+
+ShadeSamples checkedSamples(const ComposeSettings& settings, const RunSettings& run)
+{
+	ShadeSamples samples = shadeSamples(settings.pattern, settings.frame, settings.shade, run);
+	if (settings.shade.filter == ShadeFilter::window && samples.size == 1)
+	{
+		const bool given = !settings.pattern.empty();
+		throw Error(ExitCode::usage, "--filter: found 'window' with " +
+										 (given ? settings.pattern : "--method " + std::string(nameOf(settings.shade.method))) +
+										 ", whose samples have no window, expected " +
+										 (given ? "--pattern with a tile" : "another filter"));
+	}
+	checkDebug(settings.shade, samples);
+	return samples;
+}
+
+Shaded drawVolumes(const ComposeSettings& settings, const GBuffer& gbuffer, const RunSettings& run, Composed& composed)
+{
+	const VolumeSet volumes = readVolumes(settings.volumes);
+	AovShaded drawn = settings.gl ? aovOnGl(gbuffer, volumes, settings.aov, settings.drawing)
+								  : aovOnCpu(gbuffer, volumes, settings.aov, run, settings.drawing);
+	composed.volumes = drawn.counts;
+	composed.distance_m = volumes.distance_m;
+	composed.ray_distance_m = volumes.ray_distance_m;
+	return std::move(drawn.shaded);
 }
 
 // The rows of the picture within the guard band.
@@ -262,35 +287,6 @@ Composed compose(const ComposeSettings& settings, const GBuffer& gbuffer, const 
 		composed.shaded.visibility = overStatic(fixed, known, composed.shaded.visibility, without);
 	}
 	return composed;
-}
-
-ShadeSamples shadeSamples(const std::string& path, const std::optional<int>& frame, const ShadeSettings& settings,
-						  const RunSettings& run)
-{
-	const bool tile_alone = mayTakeTile(settings.method) && !path.empty();
-	if (frame && (path.empty() || !(takesPattern(settings.method) || tile_alone)))
-	{
-		throw Error(ExitCode::usage, "--frame: found without a tile, expected --pattern with one made by nook tile --frames");
-	}
-	if (!takesPattern(settings.method) && !tile_alone)
-	{
-		return ownSamples(settings);
-	}
-	PatternTile tile = tileFor(path, settings, run);
-	if (frame && tile.frames == 1)
-	{
-		throw Error(ExitCode::invalid_input, path + ": frames: found one, expected several for --frame");
-	}
-	if (settings.volume.paired)
-	{
-		for (Pattern& variant : tile.variants)
-		{
-			variant = pairedPattern(variant);
-		}
-	}
-	ShadeSamples samples = samplesOf(settings.method, tile.variants, layersOf(tile));
-	samples.variant = variantOfFrame(tile, frame.value_or(0));
-	return samples;
 }
 
 Picture withoutGuard(const std::string& path, const GBuffer& gbuffer, const std::vector<float>& values, int guard_px)

@@ -45,10 +45,6 @@ struct Composed
 // the method or each other.
 Composed compose(const ComposeSettings& settings, const GBuffer& gbuffer, const RunSettings& run);
 
-// The samples of a pattern or a tile, or nook's own without a path. Throws Error if the file does not suit method or frame.
-ShadeSamples shadeSamples(const std::string& path, const std::optional<int>& frame, const ShadeSettings& settings,
-						  const RunSettings& run);
-
 // A picture without its guard band.
 struct Picture
 {

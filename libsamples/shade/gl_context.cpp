@@ -138,19 +138,6 @@ constexpr const char* kVertexSource = R"(void main()
 }
 )";
 
-std::vector<float> readFloats(const GlTexture& texture, unsigned format, std::size_t channels)
-{
-	const PictureShape& shape = texture.shape();
-	std::vector<float> values(channels * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
-	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
-	glBindFramebuffer(GL_FRAMEBUFFER, frame);
-	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
-	glPixelStorei(GL_PACK_ALIGNMENT, 4);
-	glReadPixels(0, 0, shape.width, shape.height, format, GL_FLOAT, values.data());
-	checkGlErrors();
-	return values;
-}
-
 // This work is based on: W. D. Hillis, G. L. Steele, "Data Parallel Algorithms", CACM 1986 (sums by doubling distances).
 
 // One work group per row or column; processes 256 entries at a time and carries the sum along.
@@ -348,18 +335,6 @@ void GlPass::bindBlock(const char* block, std::span<const std::byte> bytes)
 	checkGlErrors();
 }
 
-void GlPass::leave(const GlLeft& left)
-{
-	m_left = &left;
-	m_fills = false;
-}
-
-void GlPass::fill(const GlLeft& left)
-{
-	m_left = &left;
-	m_fills = true;
-}
-
 double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 {
 	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
@@ -410,14 +385,18 @@ double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 	return seconds;
 }
 
-std::vector<float> readScalar(const GlTexture& texture)
+std::vector<float> readFloats(const GlTexture& texture)
 {
-	return readFloats(texture, GL_RED, 1);
-}
-
-std::vector<float> readQuads(const GlTexture& texture)
-{
-	return readFloats(texture, GL_RGBA, 4);
+	const PictureShape& shape = texture.shape();
+	const auto channels = static_cast<std::size_t>(channelsOf(shape.format));
+	std::vector<float> values(channels * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
+	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
+	glBindFramebuffer(GL_FRAMEBUFFER, frame);
+	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
+	glPixelStorei(GL_PACK_ALIGNMENT, 4);
+	glReadPixels(0, 0, shape.width, shape.height, formatOf(shape.format).channels, GL_FLOAT, values.data());
+	checkGlErrors();
+	return values;
 }
 
 unsigned compiledShader(unsigned kind, const std::string& source)

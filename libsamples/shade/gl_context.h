@@ -6,7 +6,6 @@
 
 #include <glm/vec4.hpp>
 
-#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
@@ -151,8 +150,11 @@ public:
 	void bindBlock(const char* block, std::span<const std::byte> bytes);
 
 	// Records the pixels that it discards, or fills only those. `left` has the target's size and must outlive the pass.
-	void leave(const GlLeft& left);
-	void fill(const GlLeft& left);
+	void use(const GlLeft& left, bool fills)
+	{
+		m_left = &left;
+		m_fills = fills;
+	}
 
 	// Fills one level of a layer, which the pass must not read, and waits. Returns the drawing time in seconds, by the driver's
 	// timer with `timer`, else by the clock.
@@ -175,8 +177,7 @@ private:
 };
 
 // Reads level 0 of a scalar picture, or of quads with four values per pixel; rows in gl_FragCoord order.
-std::vector<float> readScalar(const GlTexture& texture);
-std::vector<float> readQuads(const GlTexture& texture);
+std::vector<float> readFloats(const GlTexture& texture);
 
 // Shared by all OpenGL programs: compiling, linking and timing.
 

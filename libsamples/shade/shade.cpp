@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/shade.h"
 
-#include "core/decimal.h"
 #include "core/error.h"
 #include "core/lists.h"
 #include "core/parallel.h"
@@ -181,10 +180,8 @@ constexpr std::array<const char*, 5> kSamplers{"nook_cells", "nook_packed", "noo
 bool usesCompute(const GlContext& context, const ShadeSettings& settings)
 {
 	const TableBuilder builder = settings.statvo.builder;
-	if (builder == TableBuilder::compute && !context.hasCompute())
-	{
-		throw Error(ExitCode::unsupported, "OpenGL: found no compute shaders in " + context.renderer() + ", expected OpenGL 4.3");
-	}
+	refuseIf(builder == TableBuilder::compute && !context.hasCompute(),
+			 "OpenGL: found no compute shaders in " + context.renderer() + ", expected OpenGL 4.3", ExitCode::unsupported);
 	const bool automatic = context.hasCompute() && !context.isSoftware(); // on llvmpipe, compute shaders are five times slower
 	return builder == TableBuilder::compute || (builder == TableBuilder::automatic && automatic);
 }
@@ -218,13 +215,9 @@ std::unique_ptr<GlPass> programOf(GlSession& session, const ShadePass& pass, con
 	{
 		program->bind(kSamplers[static_cast<std::size_t>(read.slot)], *pictures[read.picture]);
 	}
-	if (pass.leaves)
+	if (pass.leaves || pass.fills)
 	{
-		program->leave(inputs.left);
-	}
-	if (pass.fills)
-	{
-		program->fill(inputs.left);
+		program->use(inputs.left, pass.fills);
 	}
 	program->bindBlock("NookBlock", std::as_bytes(std::span(&pass.block, 1)));
 	return program;
@@ -365,7 +358,7 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 	shaded.tables_by = compute ? "compute" : "fragments";
 	const GlTexture& last = *pictures[plan.passes.back().picture];
 	const bool quads = last.shape().format == PictureFormat::quad;
-	setResult(shaded, quads ? readQuads(last) : readScalar(last), quads);
+	setResult(shaded, readFloats(last), quads);
 	setTimes(shaded, times);
 	return shaded;
 }

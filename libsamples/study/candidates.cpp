@@ -30,78 +30,7 @@ std::string screenName(const Candidate& candidate)
 	return name + (candidate.recipe ? featureWords(candidate.shade) + " rays" : featureWords(shade));
 }
 
-} // namespace
-
-const MethodRow* Candidate::row() const
-{
-	return kind == CandidateKind::screen ? &rowOf(shade.method) : kind == CandidateKind::asset ? methodNamed(asset->name) : nullptr;
-}
-
-std::string Candidate::method() const
-{
-	return kind == CandidateKind::asset ? std::string(asset->name) : row() != nullptr ? std::string(row()->name) : "rays";
-}
-
-std::string Candidate::resolution() const
-{
-	if (kind == CandidateKind::asset && asset->resolution != nullptr)
-	{
-		return std::string(asset->resolution(*this));
-	}
-	return kind == CandidateKind::screen && shade.half_resolution ? "half" : "full";
-}
-
-std::string Candidate::name() const
-{
-	switch (kind)
-	{
-	case CandidateKind::screen: return screenName(*this);
-	case CandidateKind::asset: return method() + asset->words(*this);
-	case CandidateKind::rays: break;
-	}
-	return "rays " + std::to_string(count);
-}
-
-ShadeSettings shadeSettingsOf(const Candidate& candidate, double radius_m)
-{
-	assert(candidate.kind == CandidateKind::screen);
-	ShadeSettings settings = candidate.shade;
-	if (candidate.recipe)
-	{
-		applyRecipe(settings, *candidate.recipe, radius_m);
-		return settings;
-	}
-	settings.radius_m = candidate.radius_ratio * radius_m;
-	settings.volume.thickness_m = candidate.thickness_ratio * settings.radius_m;
-	return settings;
-}
-
-Candidate definitionOf(const Candidate& candidate)
-{
-	Candidate best = candidate;
-	if (candidate.kind == CandidateKind::asset && candidate.asset->definition != nullptr)
-	{
-		static_cast<AssetSettings&>(best) = candidate.asset->definition(candidate);
-	}
-	if (candidate.kind != CandidateKind::screen)
-	{
-		return best;
-	}
-	ShadeSettings& shade = best.shade;
-	shade.filter = ShadeFilter::none;
-	shade.half_resolution = false;
-	shade.bands = {};
-	shade.depth_levels = 0;
-	const MethodRow& row = rowOf(shade.method);
-	best.count = row.set_best != nullptr ? row.set_best(shade) : 256;
-	best.source = row.domain && row.own_pattern == nullptr ? SampleSource::spiral : SampleSource::own;
-	return best;
-}
-
 // The samples of candidates.
-
-namespace
-{
 
 constexpr int kWindow_px = 4;
 
@@ -131,68 +60,7 @@ Recipe recipeOf(const Candidate& candidate)
 	return recipe;
 }
 
-} // namespace
-
-CandidatePattern patternOf(const Candidate& candidate, const RunSettings& run)
-{
-	assert(candidate.kind == CandidateKind::screen && candidate.source != SampleSource::own);
-	CandidatePattern made;
-	made.recipe = recipeOf(candidate);
-	made.pattern = generatePattern(made.recipe, run);
-	if (candidate.source == SampleSource::spiral)
-	{
-		made.variants = {made.pattern};
-		return made;
-	}
-	if (candidate.source == SampleSource::uniform)
-	{
-		for (Recipe recipe = made.recipe; recipe.seed <= kWindow_px * kWindow_px; ++recipe.seed) // from 1
-		{
-			made.variants.push_back(generatePattern(recipe, run));
-		}
-		return made;
-	}
-	made.tiled = true;
-	made.tile.size = kWindow_px;
-	made.tile.kind = candidate.source == SampleSource::tile ? TileKind::points : TileKind::random;
-	made.variants = generateTile(made.pattern, made.tile, run).variants;
-	return made;
-}
-
-ShadeSamples samplesOf(const Candidate& candidate, const ShadeSettings& settings, const RunSettings& run)
-{
-	if (!takesPattern(settings.method))
-	{
-		return ownSamples(settings);
-	}
-	std::vector<Pattern> variants;
-	if (candidate.source == SampleSource::own)
-	{
-		assert(rowOf(settings.method).own_pattern != nullptr);
-		TileRecipe tile;
-		tile.kind = TileKind::random;
-		variants = generateTile(rowOf(settings.method).own_pattern(candidate.count), tile, run).variants;
-	}
-	else
-	{
-		variants = patternOf(candidate, run).variants;
-	}
-	return samplesOf(settings.method, settings.volume.paired ? mapped(variants, pairedPattern) : variants);
-}
-
-const ShadeSamples& SampleStore::samplesOf(const Candidate& candidate, const ShadeSettings& settings, const RunSettings& run)
-{
-	const std::string key = candidate.method() + " " + std::to_string(candidate.count) + " " +
-							std::string(nameOf(candidate.source)) + (settings.volume.paired ? " paired" : "") +
-							(settings.bands.count > 1 ? " bands" : "");
-	const auto found = m_made.find(key);
-	return found != m_made.end() ? found->second : m_made.emplace(key, nook::samplesOf(candidate, settings, run)).first->second;
-}
-
 // The list of candidates: the axes of each row of the table of methods, volumes and rays.
-
-namespace
-{
 
 class Grid
 {
@@ -311,6 +179,128 @@ private:
 };
 
 } // namespace
+
+const MethodRow* Candidate::row() const
+{
+	return kind == CandidateKind::screen ? &rowOf(shade.method) : kind == CandidateKind::asset ? methodNamed(asset->name) : nullptr;
+}
+
+std::string Candidate::method() const
+{
+	return kind == CandidateKind::asset ? std::string(asset->name) : row() != nullptr ? std::string(row()->name) : "rays";
+}
+
+std::string Candidate::resolution() const
+{
+	if (kind == CandidateKind::asset && asset->resolution != nullptr)
+	{
+		return std::string(asset->resolution(*this));
+	}
+	return kind == CandidateKind::screen && shade.half_resolution ? "half" : "full";
+}
+
+std::string Candidate::name() const
+{
+	switch (kind)
+	{
+	case CandidateKind::screen: return screenName(*this);
+	case CandidateKind::asset: return method() + asset->words(*this);
+	case CandidateKind::rays: break;
+	}
+	return "rays " + std::to_string(count);
+}
+
+ShadeSettings shadeSettingsOf(const Candidate& candidate, double radius_m)
+{
+	assert(candidate.kind == CandidateKind::screen);
+	ShadeSettings settings = candidate.shade;
+	if (candidate.recipe)
+	{
+		applyRecipe(settings, *candidate.recipe, radius_m);
+		return settings;
+	}
+	settings.radius_m = candidate.radius_ratio * radius_m;
+	settings.volume.thickness_m = candidate.thickness_ratio * settings.radius_m;
+	return settings;
+}
+
+Candidate definitionOf(const Candidate& candidate)
+{
+	Candidate best = candidate;
+	if (candidate.kind == CandidateKind::asset && candidate.asset->definition != nullptr)
+	{
+		static_cast<AssetSettings&>(best) = candidate.asset->definition(candidate);
+	}
+	if (candidate.kind != CandidateKind::screen)
+	{
+		return best;
+	}
+	ShadeSettings& shade = best.shade;
+	shade.filter = ShadeFilter::none;
+	shade.half_resolution = false;
+	shade.bands = {};
+	shade.depth_levels = 0;
+	const MethodRow& row = rowOf(shade.method);
+	best.count = row.set_best != nullptr ? row.set_best(shade) : 256;
+	best.source = row.domain && row.own_pattern == nullptr ? SampleSource::spiral : SampleSource::own;
+	return best;
+}
+
+CandidatePattern patternOf(const Candidate& candidate, const RunSettings& run)
+{
+	assert(candidate.kind == CandidateKind::screen && candidate.source != SampleSource::own);
+	CandidatePattern made;
+	made.recipe = recipeOf(candidate);
+	made.pattern = generatePattern(made.recipe, run);
+	if (candidate.source == SampleSource::spiral)
+	{
+		made.variants = {made.pattern};
+		return made;
+	}
+	if (candidate.source == SampleSource::uniform)
+	{
+		for (Recipe recipe = made.recipe; recipe.seed <= kWindow_px * kWindow_px; ++recipe.seed) // from 1
+		{
+			made.variants.push_back(generatePattern(recipe, run));
+		}
+		return made;
+	}
+	made.tiled = true;
+	made.tile.size = kWindow_px;
+	made.tile.kind = candidate.source == SampleSource::tile ? TileKind::points : TileKind::random;
+	made.variants = generateTile(made.pattern, made.tile, run).variants;
+	return made;
+}
+
+ShadeSamples samplesOf(const Candidate& candidate, const ShadeSettings& settings, const RunSettings& run)
+{
+	if (!takesPattern(settings.method))
+	{
+		return ownSamples(settings);
+	}
+	std::vector<Pattern> variants;
+	if (candidate.source == SampleSource::own)
+	{
+		assert(rowOf(settings.method).own_pattern != nullptr);
+		TileRecipe tile;
+		tile.kind = TileKind::random;
+		variants = generateTile(rowOf(settings.method).own_pattern(candidate.count), tile, run).variants;
+	}
+	else
+	{
+		variants = patternOf(candidate, run).variants;
+	}
+	return samplesOf(settings.method, settings.volume.paired ? mapped(variants, pairedPattern) : variants);
+}
+
+const ShadeSamples& SampleStore::samplesOf(const Candidate& candidate, const ShadeSettings& settings, const RunSettings& run)
+{
+	const std::string key = candidate.method() + " " + std::to_string(candidate.count) + " " +
+							std::string(nameOf(candidate.source)) + (settings.volume.paired ? " paired" : "") +
+							(settings.bands.count > 1 ? " bands" : "");
+	const auto found = m_made.find(key);
+	return found != m_made.end() ? found->second : m_made.emplace(key, nook::samplesOf(candidate, settings, run)).first->second;
+}
 
 std::vector<Candidate> candidateGrid(GridSize size)
 {

@@ -3,6 +3,7 @@
 #include "core/base64.h"
 #include "core/json_text.h"
 #include "core/lists.h"
+#include "core/text.h"
 #include "study/error_report.h"
 #include "study/measure_view.h"
 
@@ -11,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace nook
 {
@@ -22,6 +24,97 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "nook.error-report/1";
 constexpr int64_t kMany = int64_t{1} << 40U;
+
+// Nine significant digits: a time that is read back as seconds writes the same digits again.
+double millisecondsOf(double seconds)
+{
+	return roundedNumber(1e3 * seconds, 9);
+}
+
+Json spreadJson(const TimeSpread& spread)
+{
+	return {{"pass", spread.name},
+			{"ms", millisecondsOf(spread.median_s)},
+			{"low_ms", millisecondsOf(spread.low_s)},
+			{"high_ms", millisecondsOf(spread.high_s)}};
+}
+
+TimeSpread spreadFrom(const JsonValue& value)
+{
+	return {value.at("pass").string(), 1e-3 * value.at("ms").number(), 1e-3 * value.at("low_ms").number(),
+			1e-3 * value.at("high_ms").number()};
+}
+
+double errorFrom(const JsonValue& value)
+{
+	return value.number(0.0, 1e9);
+}
+
+int wholeFrom(const JsonValue& value, int64_t least, int64_t most)
+{
+	return static_cast<int>(value.integer(least, most));
+}
+
+uint64_t sizeFrom(const JsonValue& value)
+{
+	return static_cast<uint64_t>(value.integer(0, std::numeric_limits<int64_t>::max()));
+}
+
+std::optional<double> optionalNumber(const JsonValue& value)
+{
+	return value.value->is_null() ? std::nullopt : std::optional(value.number());
+}
+
+// Errors as they stand among a measurement's other fields.
+Json errorsJson(const ViewErrors& errors)
+{
+	return {{"eq14", errors.eq14},
+			{"rmse", errors.rmse},
+			{"flip", errors.flip},
+			{"ssim", optionalJson(errors.ssim)},
+			{"mean_error", errors.mean_error},
+			{"best_factor", errors.best_factor},
+			{"best_rmse", errors.best_rmse}};
+}
+
+ViewErrors errorsFrom(const JsonValue& value)
+{
+	return {errorFrom(value.at("eq14")),      errorFrom(value.at("rmse")),     errorFrom(value.at("flip")),
+			optionalNumber(value.at("ssim")), value.at("mean_error").number(), value.at("best_factor").number(),
+			errorFrom(value.at("best_rmse"))};
+}
+
+// Times in milliseconds, with nine significant digits; without the picture.
+Json measurementJson(const Measurement& measurement)
+{
+	Json json{{"name", measurement.candidate},
+			  {"renderer", measurement.renderer},
+			  {"repetitions", measurement.repetitions},
+			  {"time", spreadJson(measurement.total)},
+			  {"passes", mapped(measurement.passes, spreadJson)},
+			  {"fragments", measurement.fragments},
+			  {"volumes", measurement.volumes},
+			  {"bytes", measurement.bytes}};
+	json.update(errorsJson(measurement.errors));
+	json["own_rmse"] = optionalJson(measurement.own_rmse);
+	return json;
+}
+
+Measurement measurementFrom(const JsonValue& value)
+{
+	Measurement measurement;
+	measurement.candidate = value.at("name").string();
+	measurement.renderer = value.at("renderer").string();
+	measurement.repetitions = wholeFrom(value.at("repetitions"), 0, 1000000);
+	measurement.total = spreadFrom(value.at("time"));
+	measurement.passes = value.at("passes").elements(spreadFrom);
+	measurement.fragments = sizeFrom(value.at("fragments"));
+	measurement.volumes = sizeFrom(value.at("volumes"));
+	measurement.bytes = value.has("bytes") ? sizeFrom(value.at("bytes")) : 0; // reports before bakes have none
+	measurement.errors = errorsFrom(value);
+	measurement.own_rmse = optionalNumber(value.at("own_rmse"));
+	return measurement;
+}
 
 Json pictureJson(const std::vector<uint8_t>& picture)
 {
@@ -84,11 +177,6 @@ Json levelJson(const ErrorLevel& level)
 			{"triangles", level.triangles},
 			{"radius_m", level.radius_m},
 			{"views", mapped(level.views, viewJson)}};
-}
-
-int wholeFrom(const JsonValue& value, int64_t least, int64_t most)
-{
-	return static_cast<int>(value.integer(least, most));
 }
 
 std::vector<uint8_t> pictureFrom(const JsonValue& value, std::size_t pixels)

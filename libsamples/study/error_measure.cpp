@@ -4,20 +4,32 @@
 #include "study/error_report.h"
 #include "study/measure_view.h"
 
+#include "core/content_hash.h"
 #include "core/error.h"
 #include "core/lists.h"
 #include "core/work_units.h"
 #include "scene/camera_choice.h"
 #include "scene/load.h"
+#include "shade/gl_context.h"
+#include "study/fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <map>
 #include <set>
 
 namespace nook
 {
+
+void visit(Archive& archive, ScreenLimit& limit)
+{
+	archive(limit.thickness, limit.strength, limit.power, limit.errors);
+}
+
 namespace
 {
 
@@ -40,6 +52,178 @@ std::vector<Candidate> gridOf(const ErrorReportSettings& settings)
 	std::erase_if(grid, [&](const Candidate& one)
 				  { return !asked.empty() && std::find(asked.begin(), asked.end(), one.method()) == asked.end(); });
 	return grid;
+}
+
+// Rays are slow and their times steady.
+constexpr int kRayRepetitions = 2;
+
+// A result that cannot be kept ends the run, not just the level.
+struct CacheFailure : Error
+{
+	using Error::Error;
+};
+
+template <class Write> void keepOrFail(const Write& write)
+{
+	try
+	{
+		write();
+	}
+	catch (const Error& problem)
+	{
+		throw CacheFailure(problem.code(), problem.what());
+	}
+}
+
+class PointMeasurer
+{
+public:
+	// Starts what draws, once for all candidates. Throws Error: unsupported without a renderer; file, of the cache.
+	PointMeasurer(const ErrorReportSettings& settings, const RunSettings& run, ErrorReportCounts& counts)
+		: m_measure(settings.measure), m_shifts(settings.shifts), m_counts(counts),
+		  m_store(run.units != nullptr ? &run.units->store() : nullptr)
+	{
+		const RendererFacts renderer = rendererOf(m_measure);
+		m_context.renderer = renderer.name;
+		m_context.software = renderer.software;
+		m_context.threads = run.threads;
+		m_context.version = settings.version;
+		if (m_measure.device == Device::gl)
+		{
+			m_measure.session = std::make_shared<GlSession>(m_measure.gl_device);
+		}
+	}
+
+	// One context for the whole report.
+	const ErrorContext& context() const
+	{
+		return m_context;
+	}
+
+	// `most`: repetitions. Throws CacheFailure, TooSlow, or what measuring throws.
+	ErrorPoint point(ViewBench& on, const Candidate& candidate, int most = std::numeric_limits<int>::max())
+	{
+		MeasureSettings how = m_measure;
+		how.repetitions = std::min(how.repetitions, candidate.kind == CandidateKind::rays ? kRayRepetitions : most);
+		const std::string hash = hashOf(on, candidate, how, "");
+		ErrorPoint point{
+			candidate.name(), candidate.method(), candidate.origin, candidate.count, candidate.resolution(), {}, {}, false, {}};
+		point.measured = known(hash, [&] { return on.measure(candidate, how); });
+		return point;
+	}
+
+	// Returns whether its flicker is measured: not for rays, nor for what would take too long.
+	bool mayFlicker(const ErrorPoint& point) const
+	{
+		const double slowest_s = m_measure.slowest_s; // of all that it would draw
+		const bool slow = slowest_s > 0.0 && point.measured.total.median_s * m_shifts > slowest_s;
+		return m_shifts >= 2 && !slow && point.origin != Origin::rays;
+	}
+
+	double flicker(ViewBench& on, const Candidate& candidate)
+	{
+		const std::string hash = hashOf(on, candidate, m_measure, "flicker " + std::to_string(m_shifts));
+		return known(hash, [&] { return on.flicker(candidate, m_measure, m_shifts); });
+	}
+
+	// Returns a view's reference from the store, or traces it.
+	Reference reference(const std::string& hash, const std::function<Reference()>& trace)
+	{
+		if (m_store == nullptr)
+		{
+			return trace();
+		}
+		Reference found;
+		const auto compute = [&]
+		{
+			found = trace();
+			return true;
+		};
+		keepOrFail([&] { m_store->once("reference " + hash, compute, [&](Archive& archive) { archive(found); }); });
+		return found;
+	}
+
+	ViewCost costOf(const ViewBench& on, const LevelBench& bench) const
+	{
+		return {bench.hash, on.gbuffer().depth.size(), bench.level.triangles.size(), m_measure.repetitions};
+	}
+
+private:
+	std::string hashOf(ViewBench& on, const Candidate& candidate, const MeasureSettings& how, const std::string& what) const
+	{
+		ContentHash hash;
+		hash.add(on.contentHash(candidate, how, m_context.version));
+		hash.add(candidate.kind == CandidateKind::rays ? std::string("CPU") : m_context.renderer);
+		hash.add(what);
+		return hash.text();
+	}
+
+	// The value that the store has, or what `measure` finds, which is kept.
+	template <class Measure, class Value = std::invoke_result_t<Measure>>
+	Value known(const std::string& hash, const Measure& measure)
+	{
+		if (const std::optional<Value> found = m_store != nullptr ? m_store->get<Value>(hash) : std::nullopt)
+		{
+			m_counts.cached += 1;
+			return *found;
+		}
+		m_counts.measured += 1;
+		const Value made = measure();
+		if (m_store != nullptr)
+		{
+			keepOrFail([&] { m_store->put(hash, made); });
+		}
+		return made;
+	}
+
+	MeasureSettings m_measure;
+	int m_shifts;
+	ErrorReportCounts& m_counts;
+	Store* m_store; // null: nothing is kept
+	ErrorContext m_context;
+};
+
+// A view → about what one layer of depth can know of it.
+
+using Draw = std::function<std::vector<float>(const Candidate&)>;
+
+// With the strength and the power that suit this view.
+ScreenLimit limitWith(const ViewBench& on, const SliceSettings& slices, std::span<const char> counted, const Draw& draw)
+{
+	Candidate candidate;
+	candidate.shade.method = ShadeMethod::slices;
+	candidate.shade.slices = slices;
+	candidate.shade.filter = ShadeFilter::none;
+	std::vector<float> visibility = draw(candidate);
+	const ShapeView view = shapeView(0, visibility, on.reference().visibility, counted);
+	const CurveShape shape = fitShape({&view, 1});
+	for (float& v : visibility)
+	{
+		v = static_cast<float>(std::pow(std::max(0.0, 1.0 - shape.strength * (1.0 - static_cast<double>(v))), shape.power));
+	}
+	return {slices.thickness, shape.strength, shape.power, on.errorsOf(visibility)};
+}
+
+ScreenLimit screenLimitOf(const ViewBench& on, const Draw& draw, const RunSettings& run)
+{
+	const std::vector<char> counted = surfacesOf(on.gbuffer());
+	std::optional<ScreenLimit> best;
+	constexpr std::array<double, 5> kThicknesses{0.25, 0.5, 0.75, 1.0, 2.0};
+	constexpr std::array<int, 2> kStepCounts{8, 32}; // more find what is thin, fewer let more light through
+	ProgressCounter progress(run.progress, "limit", kThicknesses.size() * kStepCounts.size());
+	for (const int steps : kStepCounts)
+	{
+		for (const double thickness : kThicknesses)
+		{
+			const ScreenLimit found = limitWith(on, {16, steps, thickness}, counted, draw);
+			if (!best || found.errors.rmse < best->errors.rmse)
+			{
+				best = found;
+			}
+			progress.finishOne();
+		}
+	}
+	return *best;
 }
 
 // A candidate that was tried: its point, or why there is none; neither in a share that does not have it.

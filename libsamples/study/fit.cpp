@@ -202,10 +202,8 @@ std::vector<FitView> readViews(FitReport& report, std::deque<LevelBench>& benche
 			views.push_back(
 				{i, ViewBench(bench, camera, {settings.width_px, settings.height_px, settings.reference_rays}, whole), {}});
 			views.back().counted = surfacesOf(views.back().bench.gbuffer());
-			if (!(views.back().bench.surfaceShare() > 0.0))
-			{
-				throw Error(ExitCode::invalid_input, level.given + ": found a view without a surface, expected one to fit to");
-			}
+			refuseIf(!(views.back().bench.surfaceShare() > 0.0),
+					 level.given + ": found a view without a surface, expected one to fit to", ExitCode::invalid_input);
 		}
 		read.finishOne();
 	}

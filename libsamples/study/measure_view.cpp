@@ -2,11 +2,13 @@
 #include "study/measure_view.h"
 
 #include "core/content_hash.h"
+#include "core/json_text.h"
 #include "core/lists.h"
 #include "core/parallel.h"
 #include "core/system.h"
 #include "core/text.h"
 #include "image/compare.h"
+#include "methods/feature_table.h"
 #include "scene/describe.h"
 #include "scene/reference.h"
 #include "shade/asset_kinds.h"
@@ -161,6 +163,20 @@ RendererFacts rendererOf(const MeasureSettings& settings)
 	}
 	const GlContext context(GlApi::core, settings.gl_device);
 	return {context.renderer(), context.isSoftware()};
+}
+
+std::string viewHash(const LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const std::string& version)
+{
+	ContentHash hash;
+	hash.add(version);
+	hash.add(level.hash);
+	const View view = viewOf(camera, settings.width_px, settings.height_px);
+	for (const glm::dmat4& matrix : {view.camera_from_world, view.projection})
+	{
+		hash.add(std::as_bytes(std::span(&matrix[0][0], 16)));
+	}
+	hash.add(settings.width_px, settings.height_px, level.radius_m, settings.reference_rays, settings.seed);
+	return hash.text();
 }
 
 struct ViewBench::Data
@@ -487,8 +503,22 @@ double ViewBench::flicker(const Candidate& candidate, const MeasureSettings& set
 
 std::string ViewBench::contentHash(const Candidate& candidate, const MeasureSettings& settings, const std::string& version)
 {
-	return measurementHash(viewHash(m_data->level, m_data->camera, m_data->settings, version), candidate, settings,
-						   m_data->run.threads);
+	ContentHash hash;
+	hash.add(viewHash(m_data->level, m_data->camera, m_data->settings, version));
+	hash.add(candidate.radius_ratio, candidate.thickness_ratio, settings.repetitions, settings.errors,
+			 settings.device == Device::gl, m_data->run.threads);
+	for (const FeatureRow& feature : featureTable()) // names have words of some
+	{
+		hash.add(feature.value.get(candidate.shade));
+	}
+	if (candidate.recipe)
+	{
+		hash.add(jsonLine(recipeJson(*candidate.recipe)));
+	}
+	hash.add(candidate.name());
+	hash.add(candidate.kind == CandidateKind::asset && candidate.asset->slow ? settings.slowest_s
+																			 : 0.0); // what else there is to compare with
+	return hash.text();
 }
 
 LevelBench::LevelBench(Level given, double radius, const RunSettings& run, std::shared_ptr<SampleStore> store, double few)

@@ -15,7 +15,6 @@
 
 #include "core/archive.h"
 #include "core/error.h"
-#include "core/json_reader.h"
 #include "core/progress.h"
 #include "scene/gbuffer.h"
 #include "scene/tracer.h"
@@ -151,10 +150,6 @@ void visit(Archive& archive, ViewErrors& errors);
 // All that a view's reference depends on, as 32 hexadecimal digits: what a cache is asked for.
 std::string viewHash(const LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const std::string& version);
 
-// The key of a cache for a measurement of one candidate on a view with that viewHash(): ViewBench::contentHash says what it
-// depends on. 32 hexadecimal digits.
-std::string measurementHash(const std::string& view, const Candidate& candidate, const MeasureSettings& settings, int threads);
-
 class ViewBench
 {
 public:
@@ -233,21 +228,11 @@ struct TooSlow : Error
 // one is drawn. 0 for a picture that is too small for that (less than 64 pixels high).
 double expectedSeconds(const std::function<double(int width_px, int height_px)>& draw, int width_px, int height_px, double limit_s);
 
-// Measurements ↔ JSON.
-
-// Times in milliseconds, with nine significant digits; without the picture.
-nlohmann::ordered_json measurementJson(const Measurement& measurement);
-
-// Throws Error (invalid_input).
-Measurement measurementFrom(const JsonValue& value);
-
-// Errors alone, as they stand among a measurement's other fields.
-nlohmann::ordered_json errorsJson(const ViewErrors& errors);
-ViewErrors errorsFrom(const JsonValue& value);
-
 // null: none.
-std::optional<double> optionalNumber(const JsonValue& value);
-nlohmann::ordered_json optionalJson(const std::optional<double>& value);
+inline nlohmann::ordered_json optionalJson(const std::optional<double>& value)
+{
+	return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+}
 
 double secondsSince(std::chrono::steady_clock::time_point start);
 

@@ -29,12 +29,6 @@ void visit(Archive& archive, NoiseRow& row)
 	archive(row.pattern.domain, row.pattern.points, row.pattern.weights, row.pattern.powers);
 }
 
-template <> std::span<const std::string_view> namesOf<Variant>()
-{
-	static constexpr std::array<std::string_view, 3> names{"free", "centred", "symmetric"};
-	return names;
-}
-
 namespace
 {
 

@@ -8,21 +8,11 @@
 
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace nook
 {
-
-enum class Variant
-{
-	free,
-	centred,
-	symmetric,
-};
-template <> std::span<const std::string_view> namesOf<Variant>();
 
 struct NoiseReportSettings
 {

@@ -13,7 +13,6 @@
 #include "study/measure_view.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -376,18 +375,6 @@ std::string errorText(const CandidateComparison& found)
 
 } // namespace
 
-template <> std::span<const std::string_view> namesOf<ErrorMeasure>()
-{
-	static constexpr std::array<std::string_view, 3> kNames{"rmse", "eq14", "flip"};
-	return kNames;
-}
-
-template <> std::span<const std::string_view> namesOf<OverLevels>()
-{
-	static constexpr std::array<std::string_view, 2> kNames{"mean", "worst"};
-	return kNames;
-}
-
 TuneSearchSettings rungsFor(std::size_t views, int repetitions)
 {
 	TuneSearchSettings settings;
@@ -410,11 +397,10 @@ TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings
 	report.prepared_s = secondsSince(start);
 	TuneBench bench(report, run);
 	bench.setViews(cameras);
-	if (bench.views() == 0)
-	{
-		throw Error(ExitCode::runtime, "levels: found none of " + std::to_string(levels.size()) +
-										   " that can be measured, expected one: " + report.levels.front().failed);
-	}
+	refuseIf(bench.views() == 0,
+			 "levels: found none of " + std::to_string(levels.size()) +
+				 " that can be measured, expected one: " + report.levels.front().failed,
+			 ExitCode::runtime);
 	report.rungs = rungsFor(bench.views(), settings.repetitions);
 	const MeasureTrial measure = [&bench](std::size_t candidate, const Fidelity& fidelity)
 	{

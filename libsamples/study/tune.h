@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,8 +19,8 @@
 namespace nook
 {
 
-template <> std::span<const std::string_view> namesOf<ErrorMeasure>();
-template <> std::span<const std::string_view> namesOf<OverLevels>();
+template <> inline constexpr std::array<std::string_view, 3> kNamesOf<ErrorMeasure>{"rmse", "eq14", "flip"};
+template <> inline constexpr std::array<std::string_view, 2> kNamesOf<OverLevels>{"mean", "worst"};
 
 struct TuneSettings
 {

@@ -34,11 +34,6 @@ std::string length(double value_m)
 	return roundedText(value_m, 6);
 }
 
-std::string targetName(GlslTarget target)
-{
-	return std::string(glslTargets()[static_cast<std::size_t>(target)]);
-}
-
 class Emitter
 {
 public:
@@ -109,9 +104,10 @@ private:
 		}
 		module.methods.push_back(method);
 		const std::string glsl = (m_settings.device_depth ? std::string(" --depth device") : std::string()) +
-								 emitOptions(module.shade) + " --glsl " + targetName(m_settings.target);
-		m_made.files.push_back({kModule, moduleGlsl(module, {command + glsl, m_settings.version, {}, base}),
-								"the shader's functions, GLSL " + targetName(m_settings.target) + "; its head lists the passes"});
+								 emitOptions(module.shade) + " --glsl " + std::string(nook::nameOf(m_settings.target));
+		m_made.files.push_back(
+			{kModule, moduleGlsl(module, {command + glsl, m_settings.version, {}, base}),
+			 "the shader's functions, GLSL " + std::string(nook::nameOf(m_settings.target)) + "; its head lists the passes"});
 		m_made.files.push_back(
 			{kHeader, moduleHeader(module, {command, m_settings.version, {}, base}),
 			 std::string("C++: fills the shader's block") + (base.empty() ? "" : ", and holds the tile's texels")});

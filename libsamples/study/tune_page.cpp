@@ -4,6 +4,7 @@
 #include "core/json_text.h"
 #include "core/lists.h"
 #include "core/text.h"
+#include "core/words.h"
 #include "page/page_fill.h"
 #include "study/measure_view.h"
 
@@ -58,11 +59,6 @@ std::string spreadOf(const TuneReport& report, const Tried& tried)
 	return "±" + padded(fixedText(100.0 * most, 0), 4) + " %";
 }
 
-std::string numbered(std::size_t count, const std::string& what)
-{
-	return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
 std::string whatWasMeasured(const TuneReport& report)
 {
 	std::string names;
@@ -75,14 +71,14 @@ std::string whatWasMeasured(const TuneReport& report)
 		views += level.views.size();
 	}
 	const TuneSettings& settings = report.settings;
-	return names + "; " + numbered(views, "view") + " of " + std::to_string(settings.width_px) + " × " +
+	return names + "; " + counted(views, "view", "views") + " of " + std::to_string(settings.width_px) + " × " +
 		   std::to_string(settings.height_px) + " pixels; " + std::string(nameOf(settings.measure)) + " to rays, " +
 		   (settings.goal.over == OverLevels::mean ? "the mean over levels" : "the worst of the levels");
 }
 
 std::string searchText(const TuneReport& report)
 {
-	std::string text = numbered(report.candidates.size(), "candidate") + ": ";
+	std::string text = counted(report.candidates.size(), "candidate", "candidates") + ": ";
 	std::string rungs;
 	for (std::size_t i = 0; i < report.search.rungs.size(); ++i)
 	{
@@ -91,7 +87,8 @@ std::string searchText(const TuneReport& report)
 		{
 			rungs += (rungs.empty() ? "" : ", ") + std::to_string(report.search.rungs[i].candidates) + " at " +
 					 (rung.scale == 1.0 ? "full size" : roundedText(rung.scale, 6) + " of the width") + " on " +
-					 numbered(rung.views, "view") + " with " + numbered(static_cast<std::size_t>(rung.repetitions), "drawing");
+					 counted(rung.views, "view", "views") + " with " +
+					 counted(static_cast<std::size_t>(rung.repetitions), "drawing", "drawings");
 		}
 	}
 	return text + rungs + "; measuring took " + fixedText(report.search.cost_s, 1) + " s, preparing levels and references " +
@@ -117,8 +114,8 @@ std::vector<std::string> failures(const TuneReport& report)
 	}
 	if (first != nullptr)
 	{
-		lines.push_back(numbered(failed, "candidate") + (failed == 1 ? " is" : " are") + " not in these figures; the first is " +
-						report.candidates[first->candidate].name() + ": " + first->failed);
+		lines.push_back(counted(failed, "candidate", "candidates") + (failed == 1 ? " is" : " are") +
+						" not in these figures; the first is " + report.candidates[first->candidate].name() + ": " + first->failed);
 	}
 	if (const std::string busy = busyText(report.busy); !busy.empty())
 	{

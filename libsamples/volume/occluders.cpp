@@ -20,33 +20,19 @@
 
 namespace nook
 {
-
-std::vector<uint8_t> closedTriangles(const Level& level, const RunSettings& run)
-{
-	OccluderSettings settings;
-	settings.merge = false;
-	OccluderCounts counts;
-	const detail::Soup soup{&level, level.triangles, level.materials, {}};
-	const detail::Surface surface = detail::surfaceOf(soup, settings, run, counts);
-	return listOf(level.triangles.size(), [&surface](std::size_t i)
-				  { return static_cast<uint8_t>(surface.kept[i] != 0 && surface.two_sided[i] == 0 ? 1 : 0); });
-}
-
-} // namespace nook
-
-namespace nook::detail
-{
-
 namespace
 {
+
+using namespace detail;
+
+constexpr double kClear = 1.0 / 1024.0; // ᾱ below which a polygon is dropped as clear: a quarter of an 8-bit step
 
 double sumOfHalves(const Occluders& occluders, double length_m)
 {
 	return sumOver(occluders.polygons, [&](const Occluder& polygon) { return halvesOf(occluders.cornersOf(polygon), length_m); });
 }
 
-} // namespace
-
+// ᾱ of a polygon with the material and texture coordinates of a triangle.
 double alphaOf(const Soup& soup, uint32_t look, std::span<const glm::dvec3> corners)
 {
 	const Material& material = soup.level->material_list[soup.materials[look]];
@@ -58,6 +44,8 @@ double alphaOf(const Soup& soup, uint32_t look, std::span<const glm::dvec3> corn
 	return coverageOf(*soup.level, material, mapped(corners, [&map](glm::dvec3 corner) { return map.at(corner); }));
 }
 
+// Length that polygons are cut to: `extent`, or twice, four times … that if it would make over a quarter more polygons. Depends on
+// the merged polygons, not on their triangulation. Infinite if none is cut.
 double cutLength(const Occluders& occluders, const OccluderSettings& settings)
 {
 	const double most = 1.25 * static_cast<double>(occluders.polygons.size());
@@ -71,11 +59,14 @@ double cutLength(const Occluders& occluders, const OccluderSettings& settings)
 	return INFINITY;
 }
 
+// Upper bound of the number of pieces.
 uint64_t piecesOf(const Occluders& occluders, double length_m)
 {
 	return static_cast<uint64_t>(std::min(sumOfHalves(occluders, length_m), 1e18));
 }
 
+// Each piece has its own ᾱ; clear ones are counted and dropped. looks: for each polygon a triangle with its material and texture
+// mapping.
 Occluders cutOccluders(const Soup& soup, const Occluders& occluders, const std::vector<uint32_t>& looks, double length_m,
 					   OccluderCounts& counts)
 {
@@ -107,8 +98,13 @@ Occluders cutOccluders(const Soup& soup, const Occluders& occluders, const std::
 // This work is based on: Michael Garland and Paul Heckbert, Surface Simplification Using Quadric Error Metrics, 1997, as
 // implemented by meshoptimizer.
 
-namespace
+struct Proxies
 {
+	std::vector<glm::uvec3> triangles; // vertices of the level
+	std::vector<uint32_t> materials;
+	std::vector<uint32_t> sources; // level triangle that represents each: the first of its piece of surface
+	double deviation_m = 0.0;      // greatest error reported by the simplification
+};
 
 constexpr std::size_t kFewest = 8; // smallest piece to simplify, in triangles: a box has twelve
 
@@ -193,8 +189,9 @@ std::vector<Part> piecesOf(const Level& level, std::span<const uint8_t> may_chan
 	return pieces;
 }
 
-} // namespace
-
+// Simplifies each piece of surface (connected by vertices, one material) of the triangles with may_change ≠ 0 separately with
+// meshoptimizer (quadric errors), by at most about `error_m`. Borders are locked, so seams fit and closed pieces stay closed. A
+// piece that would vanish is left unchanged, like all other triangles.
 Proxies proxiesOf(const Level& level, std::span<const uint8_t> may_change, double error_m, const RunSettings& run)
 {
 	const std::vector<uint32_t> first = weldPositions(level.positions, run.threads);
@@ -235,16 +232,6 @@ Proxies proxiesOf(const Level& level, std::span<const uint8_t> may_change, doubl
 	}
 	return proxies;
 }
-
-} // namespace nook::detail
-
-namespace nook
-{
-
-namespace
-{
-
-using namespace detail;
 
 constexpr std::size_t kSoupBlock = std::size_t{1} << 12U;
 constexpr uint64_t kMostPieces = uint64_t{1} << 29U; // each cut adds four corners, whose number must fit 32 bits
@@ -548,6 +535,17 @@ void cutLong(Occluding& result, const Soup& soup, const std::vector<uint32_t>& l
 }
 
 } // namespace
+
+std::vector<uint8_t> closedTriangles(const Level& level, const RunSettings& run)
+{
+	OccluderSettings settings;
+	settings.merge = false;
+	OccluderCounts counts;
+	const Soup soup{&level, level.triangles, level.materials, {}};
+	const Surface surface = surfaceOf(soup, settings, run, counts);
+	return listOf(level.triangles.size(), [&surface](std::size_t i)
+				  { return static_cast<uint8_t>(surface.kept[i] != 0 && surface.two_sided[i] == 0 ? 1 : 0); });
+}
 
 Occluding occludersOf(const Level& level, const OccluderSettings& settings, const RunSettings& run)
 {

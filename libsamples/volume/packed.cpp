@@ -352,63 +352,6 @@ void append(PackedVolumes& all, PackedPart& part)
 	moveTo(all.indices, some.indices);
 }
 
-} // namespace
-
-PackedVolumes packVolumes(const VolumeSet& volumes, const PackSettings& settings, const RunSettings& run)
-{
-	PackedVolumes packed;
-	constexpr std::size_t kBatch = 1024; // clusters held in memory twice
-	for (std::size_t first = 0; first < volumes.clusters.size(); first += kBatch)
-	{
-		std::vector<PackedPart> parts(std::min(kBatch, volumes.clusters.size() - first));
-		parallelFor(parts.size(), run.threads,
-					[&](std::size_t i) { parts[i] = ClusterPacker(volumes, volumes.clusters[first + i], settings.prisms).pack(); });
-		for (PackedPart& part : parts)
-		{
-			append(packed, part);
-		}
-	}
-	return packed;
-}
-
-VolumeSet unpacked(const PackedVolumes& packed, VolumeSet volumes)
-{
-	Occluders& occluders = volumes.occluders;
-	occluders = {};
-	volumes.plane_error_m = std::max(volumes.plane_error_m, packed.plane_error_m);
-	volumes.clusters.clear();
-	occluders.corners.reserve(packed.corners.size());
-	occluders.polygons.reserve(packed.polygons.size());
-	for (const nook_volumes::Cluster& cluster : packed.clusters)
-	{
-		const glm::dvec3 origin(cluster.origin[0], cluster.origin[1], cluster.origin[2]);
-		const glm::dvec3 step(cluster.step[0], cluster.step[1], cluster.step[2]);
-		for (uint32_t i = cluster.first_corner; i < cluster.first_corner + cluster.corner_count; ++i)
-		{
-			const nook_volumes::Corner& corner = packed.corners[i];
-			occluders.corners.push_back(origin + step * glm::dvec3(corner.x, corner.y, corner.z));
-		}
-		for (uint32_t i = cluster.first_polygon; i < cluster.first_polygon + cluster.polygon_count; ++i)
-		{
-			const nook_volumes::Polygon& polygon = packed.polygons[i];
-			Occluder& made = occluders.polygons.emplace_back();
-			made.first_corner = polygon.first_corner;
-			made.corner_count = nook_volumes::cornerCountOf(polygon);
-			made.alpha = static_cast<float>(static_cast<double>(polygon.alpha) / kMost);
-			made.two_sided = (polygon.flags & nook_volumes::kTwoSided) != 0;
-			made.reach = static_cast<float>(nook_volumes::reachOf(polygon));
-			made.side_reach = static_cast<float>(nook_volumes::sideReachOf(polygon));
-		}
-		const glm::dvec3 least(cluster.least[0], cluster.least[1], cluster.least[2]);
-		const glm::dvec3 most(cluster.most[0], cluster.most[1], cluster.most[2]);
-		volumes.clusters.push_back({cluster.first_polygon, cluster.polygon_count, origin + least, origin + most});
-	}
-	return volumes;
-}
-
-namespace
-{
-
 // Sort keys of a polygon.
 struct Item
 {
@@ -553,6 +496,58 @@ Occluders reordered(const Occluders& occluders, std::span<const uint32_t> order)
 }
 
 } // namespace
+
+PackedVolumes packVolumes(const VolumeSet& volumes, const PackSettings& settings, const RunSettings& run)
+{
+	PackedVolumes packed;
+	constexpr std::size_t kBatch = 1024; // clusters held in memory twice
+	for (std::size_t first = 0; first < volumes.clusters.size(); first += kBatch)
+	{
+		std::vector<PackedPart> parts(std::min(kBatch, volumes.clusters.size() - first));
+		parallelFor(parts.size(), run.threads,
+					[&](std::size_t i) { parts[i] = ClusterPacker(volumes, volumes.clusters[first + i], settings.prisms).pack(); });
+		for (PackedPart& part : parts)
+		{
+			append(packed, part);
+		}
+	}
+	return packed;
+}
+
+VolumeSet unpacked(const PackedVolumes& packed, VolumeSet volumes)
+{
+	Occluders& occluders = volumes.occluders;
+	occluders = {};
+	volumes.plane_error_m = std::max(volumes.plane_error_m, packed.plane_error_m);
+	volumes.clusters.clear();
+	occluders.corners.reserve(packed.corners.size());
+	occluders.polygons.reserve(packed.polygons.size());
+	for (const nook_volumes::Cluster& cluster : packed.clusters)
+	{
+		const glm::dvec3 origin(cluster.origin[0], cluster.origin[1], cluster.origin[2]);
+		const glm::dvec3 step(cluster.step[0], cluster.step[1], cluster.step[2]);
+		for (uint32_t i = cluster.first_corner; i < cluster.first_corner + cluster.corner_count; ++i)
+		{
+			const nook_volumes::Corner& corner = packed.corners[i];
+			occluders.corners.push_back(origin + step * glm::dvec3(corner.x, corner.y, corner.z));
+		}
+		for (uint32_t i = cluster.first_polygon; i < cluster.first_polygon + cluster.polygon_count; ++i)
+		{
+			const nook_volumes::Polygon& polygon = packed.polygons[i];
+			Occluder& made = occluders.polygons.emplace_back();
+			made.first_corner = polygon.first_corner;
+			made.corner_count = nook_volumes::cornerCountOf(polygon);
+			made.alpha = static_cast<float>(static_cast<double>(polygon.alpha) / kMost);
+			made.two_sided = (polygon.flags & nook_volumes::kTwoSided) != 0;
+			made.reach = static_cast<float>(nook_volumes::reachOf(polygon));
+			made.side_reach = static_cast<float>(nook_volumes::sideReachOf(polygon));
+		}
+		const glm::dvec3 least(cluster.least[0], cluster.least[1], cluster.least[2]);
+		const glm::dvec3 most(cluster.most[0], cluster.most[1], cluster.most[2]);
+		volumes.clusters.push_back({cluster.first_polygon, cluster.polygon_count, origin + least, origin + most});
+	}
+	return volumes;
+}
 
 Bounds boundsAround(std::span<const glm::dvec3> points)
 {

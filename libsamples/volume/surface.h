@@ -85,38 +85,6 @@ void addHoles(std::span<const OpenEdge> edges, std::span<const glm::dvec3> posit
 // (measured by tests).
 double coverageOf(const Level& level, const Material& material, std::span<const glm::dvec2> corners);
 
-// Simplifies a level's surfaces: where detail is small relative to δ, fewer triangles block the same light.
-
-struct Proxies
-{
-	std::vector<glm::uvec3> triangles; // vertices of the level
-	std::vector<uint32_t> materials;
-	std::vector<uint32_t> sources; // level triangle that represents each: the first of its piece of surface
-	double deviation_m = 0.0;      // greatest error reported by the simplification
-};
-
-// Simplifies each piece of surface (connected by vertices, one material) of the triangles with may_change ≠ 0 separately with
-// meshoptimizer (quadric errors), by at most about `error_m`. Borders are locked, so seams fit and closed pieces stay closed. A
-// piece that would vanish is left unchanged, like all other triangles.
-Proxies proxiesOf(const Level& level, std::span<const uint8_t> may_change, double error_m, const RunSettings& run);
-
-inline constexpr double kClear = 1.0 / 1024.0; // ᾱ below which a polygon is dropped as clear: a quarter of an 8-bit step
-
-// ᾱ of a polygon with the material and texture coordinates of a triangle.
-double alphaOf(const Soup& soup, uint32_t look, std::span<const glm::dvec3> corners);
-
-// Length that polygons are cut to: `extent`, or twice, four times … that if it would make over a quarter more polygons. Depends on
-// the merged polygons, not on their triangulation. Infinite if none is cut.
-double cutLength(const Occluders& occluders, const OccluderSettings& settings);
-
-// Upper bound of the number of pieces.
-uint64_t piecesOf(const Occluders& occluders, double length_m);
-
-// Each piece has its own ᾱ; clear ones are counted and dropped. looks: for each polygon a triangle with its material and texture
-// mapping.
-Occluders cutOccluders(const Soup& soup, const Occluders& occluders, const std::vector<uint32_t>& looks, double length_m,
-					   OccluderCounts& counts);
-
 // Groups connected coplanar triangles into flat regions and extracts their outlines.
 
 struct Region

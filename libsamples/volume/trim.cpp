@@ -14,9 +14,9 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace nook
@@ -47,6 +47,241 @@ bool isBeyond(const TrimPart& part, VolumeReach reach)
 	const VolumeReach at = part.reach();
 	return at.height >= reach.height || at.side >= reach.side;
 }
+
+// How much each receiver has lost, and may still lose.
+class TrimAllowances
+{
+public:
+	TrimAllowances(const std::vector<double>& sums, double share) : m_share(share), m_receivers(sums.size())
+	{
+		for (std::size_t i = 0; i < sums.size(); ++i)
+		{
+			m_receivers[i].most = share * std::max(sums[i], kTrimFloor);
+		}
+	}
+
+	// The squared fraction of the receiver's total, or of kTrimFloor: a volume's border is an edge, and two faint edges are less
+	// visible than one of their sum.
+	double lossOf(const TrimPart& part) const
+	{
+		const double share = m_share * part.occlusion() / m_receivers[part.receiver()].most;
+		return share * share;
+	}
+
+	bool canTake(const TrimPart& part) const
+	{
+		const Receiver& receiver = m_receivers[part.receiver()];
+		return receiver.lost + part.occlusion() <= receiver.most;
+	}
+
+	void take(const TrimPart& part)
+	{
+		m_receivers[part.receiver()].lost += part.occlusion();
+	}
+
+	void giveBack(const TrimPart& part)
+	{
+		m_receivers[part.receiver()].lost -= part.occlusion();
+	}
+
+	void describe(TrimCounts& counts) const
+	{
+		for (const Receiver& receiver : m_receivers)
+		{
+			counts.greatest_loss = std::max(counts.greatest_loss, receiver.lost);
+			counts.mean_loss += receiver.lost / static_cast<double>(m_receivers.size());
+		}
+	}
+
+private:
+	struct Receiver // together in memory, since each part accesses another receiver
+	{
+		double lost = 0.0;
+		double most = 0.0;
+	};
+
+	double m_share;
+	std::vector<Receiver> m_receivers;
+};
+
+// A volume that is made smaller step by step.
+class Shrinking
+{
+public:
+	Shrinking() = default; // keeps its reach
+
+	// Keeps a reference to the parts and reorders them.
+	Shrinking(const VolumeSet& volumes, const Occluder& polygon, std::span<TrimPart> parts) : m_parts(parts), m_left(parts.size())
+	{
+		const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(polygon);
+		glm::dvec3 across(0.0);
+		for (std::size_t i = 0; i < corners.size(); ++i)
+		{
+			const glm::dvec3 next = corners[(i + 1) % corners.size()];
+			across += glm::cross(corners[i] - corners[0], next - corners[0]) * (0.5 / (volumes.distance_m * volumes.distance_m));
+			m_outline += glm::length(next - corners[i]) / volumes.distance_m;
+			// Half-angle tangent of the turn, for unit vectors; exact bounds limit it to about 64.
+			const glm::dvec3 before = glm::normalize(corners[i] - corners[(i + corners.size() - 1) % corners.size()]);
+			const glm::dvec3 after = glm::normalize(next - corners[i]);
+			m_mitres += glm::length(before - after) / std::max(glm::length(before + after), kSharpest);
+		}
+		m_area = glm::length(across);
+		m_sides = polygon.two_sided ? 2.0 : 1.0;
+		findFirst();
+	}
+
+	// Approximate surface of such a volume, in squared distances: four times its average fragments in a view.
+	double surface(VolumeReach reach) const
+	{
+		const VolumeReach kept = rounded(reach);
+		const auto side = static_cast<double>(kept.side);
+		const double area = m_area + (m_outline + m_mitres * side) * side;
+		return 2.0 * area + (m_outline + 2.0 * m_mitres * side) * static_cast<double>(kept.height) * m_sides;
+	}
+
+	// Repeatedly removes what saves most, while the loss is below `price` per squared distance saved.
+	void shrink(TrimAllowances& allowances, double price)
+	{
+		for (;;)
+		{
+			Step best;
+			for (int way = 0; way < kWays; ++way)
+			{
+				look(way, allowances, price, best);
+			}
+			if (best.value <= 0.0)
+			{
+				return;
+			}
+			m_reach = best.reach;
+			const auto lost = std::partition(m_parts.begin(), m_parts.begin() + static_cast<std::ptrdiff_t>(m_left),
+											 [this](const TrimPart& part) { return !isBeyond(part, m_reach); });
+			const auto left = static_cast<std::size_t>(lost - m_parts.begin());
+			for (const TrimPart& part : m_parts.subspan(left, m_left - left))
+			{
+				allowances.take(part);
+			}
+			m_left = left;
+			findFirst();
+		}
+	}
+
+	// The resulting reach in the steps of files. Parts between it and the next receiver are not lost.
+	VolumeReach finish(TrimAllowances& allowances)
+	{
+		const VolumeReach reach = rounded(m_reach);
+		const auto lost = std::partition(m_parts.begin() + static_cast<std::ptrdiff_t>(m_left), m_parts.end(),
+										 [reach](const TrimPart& part) { return !isBeyond(part, reach); });
+		const auto left = static_cast<std::size_t>(lost - m_parts.begin());
+		for (const TrimPart& part : m_parts.subspan(m_left, left - m_left))
+		{
+			allowances.giveBack(part);
+		}
+		m_left = left;
+		return reach;
+	}
+
+	std::size_t lost() const // number of parts
+	{
+		return m_parts.size() - m_left;
+	}
+
+private:
+	// Ways to make it smaller: lower, narrower, both.
+	static constexpr int kWays = 3;
+
+	struct Step
+	{
+		double value = 0.0;
+		VolumeReach reach;
+	};
+
+	struct Place
+	{
+		uint64_t order = 0; // distance from the outside, then the lowest receiver
+		uint32_t part = 0;
+
+		bool operator<(const Place& other) const
+		{
+			return order < other.order;
+		}
+	};
+
+	static VolumeReach cutTo(int way, VolumeReach reach, uint32_t along)
+	{
+		const float to = static_cast<float>(along) / 1024.0F;
+		return {way == 1 ? reach.height : std::min(reach.height, to), way == 0 ? reach.side : std::min(reach.side, to)};
+	}
+
+	Place placeOf(int way, uint32_t part) const
+	{
+		const uint32_t step = way == 1 ? static_cast<uint32_t>(m_reach.height * 128.0F) : 8; // file steps, in 1/1024
+		return {uint64_t{m_parts[part].along(way, step)} << 32U | ~m_parts[part].receiver(), part};
+	}
+
+	void findFirst()
+	{
+		std::array<Place, kWays> first{};
+		for (uint32_t i = 0; i < m_left; ++i)
+		{
+			for (std::size_t way = 0; way < kWays; ++way)
+			{
+				first[way] = std::max(first[way], placeOf(static_cast<int>(way), i));
+			}
+		}
+		std::transform(first.begin(), first.end(), m_first.begin(), [](const Place& place) { return place.part; });
+	}
+
+	// Outermost parts first, while the cost is acceptable. That is usually short, so only the first one is kept between looks, and
+	// further ones are found by a heap.
+	void look(int way, const TrimAllowances& allowances, double price, Step& best) const
+	{
+		const double now = surface(m_reach);
+		const double most = price * (now - surface(cutTo(way, m_reach, 0)));
+		const auto isTooMuch = [&](const TrimPart& part, double before)
+		{
+			return !allowances.canTake(part) || most - (before + allowances.lossOf(part)) <= best.value;
+		};
+		if (m_left == 0 || isTooMuch(m_parts[m_first[static_cast<std::size_t>(way)]], 0.0))
+		{
+			return;
+		}
+		std::vector<Place> places = listOf(m_left, [&](std::size_t i) { return placeOf(way, static_cast<uint32_t>(i)); });
+		std::make_heap(places.begin(), places.end());
+		double loss = 0.0;
+		while (!places.empty())
+		{
+			const Place place = places.front();
+			const TrimPart& part = m_parts[place.part];
+			if (place.order >> 32U == 0 || isTooMuch(part, loss))
+			{
+				return; // everything after it costs more
+			}
+			loss += allowances.lossOf(part);
+			std::pop_heap(places.begin(), places.end());
+			places.pop_back();
+			if (!places.empty() && places.front().order >> 32U == place.order >> 32U)
+			{
+				continue; // both or neither
+			}
+			const VolumeReach reach = cutTo(way, m_reach, static_cast<uint32_t>(place.order >> 32U));
+			const double value = price * (now - surface(reach)) - loss;
+			if (value > best.value)
+			{
+				best = {value, reach};
+			}
+		}
+	}
+
+	std::span<TrimPart> m_parts; // remaining parts first, then lost ones
+	std::size_t m_left = 0;
+	std::array<uint32_t, kWays> m_first{}; // the outermost remaining part of each way
+	double m_area = 0.0;                   // polygon area, in squared distances
+	double m_outline = 0.0;                // polygon perimeter, in distances
+	double m_mitres = 0.0;                 // growth at corners, in squares of the side
+	double m_sides = 1.0;
+	VolumeReach m_reach;
+};
 
 constexpr std::size_t kFewestReceivers = 4;    // per volume that is trimmed
 constexpr int kRays = 16;                      // from a polygon whose volume has fewer receivers
@@ -216,148 +451,6 @@ double evenPrice(const std::vector<Shrinking>& volumes, const Asked& asked, cons
 }
 
 } // namespace
-
-TrimPart::TrimPart(uint32_t receiver, float occlusion, VolumeReach needed) : m_receiver(receiver)
-{
-	const uint32_t fraction = std::bit_cast<uint32_t>(std::max(occlusion, 0x1p-31F)) + 0x1fffU;
-	const uint32_t height = std::min(static_cast<uint32_t>(needed.height * 128.0F), 127U);
-	const uint32_t side = std::min(static_cast<uint32_t>(needed.side * 1024.0F), 1023U);
-	m_bits = std::min((fraction >> 13U) - kLeastExponent, 0x7fffU) << 17U | height << 10U | side;
-}
-
-Shrinking::Shrinking(const VolumeSet& volumes, const Occluder& polygon, std::span<TrimPart> parts)
-	: m_parts(parts), m_left(parts.size())
-{
-	const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(polygon);
-	glm::dvec3 across(0.0);
-	for (std::size_t i = 0; i < corners.size(); ++i)
-	{
-		const glm::dvec3 next = corners[(i + 1) % corners.size()];
-		across += glm::cross(corners[i] - corners[0], next - corners[0]) * (0.5 / (volumes.distance_m * volumes.distance_m));
-		m_outline += glm::length(next - corners[i]) / volumes.distance_m;
-		// Half-angle tangent of the turn, for unit vectors; exact bounds limit it to about 64.
-		const glm::dvec3 before = glm::normalize(corners[i] - corners[(i + corners.size() - 1) % corners.size()]);
-		const glm::dvec3 after = glm::normalize(next - corners[i]);
-		m_mitres += glm::length(before - after) / std::max(glm::length(before + after), kSharpest);
-	}
-	m_area = glm::length(across);
-	m_sides = polygon.two_sided ? 2.0 : 1.0;
-	findFirst();
-}
-
-double Shrinking::surface(VolumeReach reach) const
-{
-	const VolumeReach kept = rounded(reach);
-	const auto side = static_cast<double>(kept.side);
-	const double area = m_area + (m_outline + m_mitres * side) * side;
-	return 2.0 * area + (m_outline + 2.0 * m_mitres * side) * static_cast<double>(kept.height) * m_sides;
-}
-
-void Shrinking::shrink(TrimAllowances& allowances, double price)
-{
-	for (;;)
-	{
-		Step best;
-		for (int way = 0; way < kWays; ++way)
-		{
-			look(way, allowances, price, best);
-		}
-		if (best.value <= 0.0)
-		{
-			return;
-		}
-		m_reach = best.reach;
-		const auto lost = std::partition(m_parts.begin(), m_parts.begin() + static_cast<std::ptrdiff_t>(m_left),
-										 [this](const TrimPart& part) { return !isBeyond(part, m_reach); });
-		const auto left = static_cast<std::size_t>(lost - m_parts.begin());
-		for (const TrimPart& part : m_parts.subspan(left, m_left - left))
-		{
-			allowances.take(part);
-		}
-		m_left = left;
-		findFirst();
-	}
-}
-
-VolumeReach Shrinking::finish(TrimAllowances& allowances)
-{
-	const VolumeReach reach = rounded(m_reach);
-	const auto lost = std::partition(m_parts.begin() + static_cast<std::ptrdiff_t>(m_left), m_parts.end(),
-									 [reach](const TrimPart& part) { return !isBeyond(part, reach); });
-	const auto left = static_cast<std::size_t>(lost - m_parts.begin());
-	for (const TrimPart& part : m_parts.subspan(m_left, left - m_left))
-	{
-		allowances.giveBack(part);
-	}
-	m_left = left;
-	return reach;
-}
-
-VolumeReach Shrinking::cutTo(int way, VolumeReach reach, uint32_t along)
-{
-	const float to = static_cast<float>(along) / 1024.0F;
-	return {way == 1 ? reach.height : std::min(reach.height, to), way == 0 ? reach.side : std::min(reach.side, to)};
-}
-
-Shrinking::Place Shrinking::placeOf(int way, uint32_t part) const
-{
-	const uint32_t step = way == 1 ? static_cast<uint32_t>(m_reach.height * 128.0F) : 8; // file steps, in 1/1024
-	return {uint64_t{m_parts[part].along(way, step)} << 32U | ~m_parts[part].receiver(), part};
-}
-
-void Shrinking::findFirst()
-{
-	std::array<Place, kWays> first{};
-	for (uint32_t i = 0; i < m_left; ++i)
-	{
-		for (std::size_t way = 0; way < kWays; ++way)
-		{
-			first[way] = std::max(first[way], placeOf(static_cast<int>(way), i));
-		}
-	}
-	std::transform(first.begin(), first.end(), m_first.begin(), [](const Place& place) { return place.part; });
-}
-
-// Outermost parts first, while the cost is acceptable. That is usually short, so only the first one is kept between looks, and
-// further ones are found by a heap.
-void Shrinking::look(int way, const TrimAllowances& allowances, double price, Step& best) const
-{
-	const double now = surface(m_reach);
-	const double most = price * (now - surface(cutTo(way, m_reach, 0)));
-	const auto isTooMuch = [&](const TrimPart& part, double before)
-	{
-		return !allowances.canTake(part) || most - (before + allowances.lossOf(part)) <= best.value;
-	};
-	if (m_left == 0 || isTooMuch(m_parts[m_first[static_cast<std::size_t>(way)]], 0.0))
-	{
-		return;
-	}
-	std::vector<Place> places = listOf(m_left, [&](std::size_t i) { return placeOf(way, static_cast<uint32_t>(i)); });
-	std::make_heap(places.begin(), places.end());
-	double loss = 0.0;
-	while (!places.empty())
-	{
-		const Place place = places.front();
-		const TrimPart& part = m_parts[place.part];
-		if (place.order >> 32U == 0 || isTooMuch(part, loss))
-		{
-			return; // everything after it costs more
-		}
-		loss += allowances.lossOf(part);
-		std::pop_heap(places.begin(), places.end());
-		places.pop_back();
-		if (!places.empty() && places.front().order >> 32U == place.order >> 32U)
-		{
-			continue; // both or neither
-		}
-		const VolumeReach reach = cutTo(way, m_reach, static_cast<uint32_t>(place.order >> 32U));
-		const double value = price * (now - surface(reach)) - loss;
-		if (value > best.value)
-		{
-			best = {value, reach};
-		}
-	}
-}
 
 TrimCounts trimVolumes(VolumeSet& volumes, std::span<const ReferencePoint> receivers, const TrimSettings& settings,
 					   const RunSettings& run, const Tracer* tracer)

@@ -8,7 +8,8 @@
 #include "volume/receivers.h"
 #include "volume/volumes.h"
 
-#include <array>
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -59,13 +60,17 @@ struct VolumeReach
 	float side = 1.0F;
 };
 
-// For trim.cpp: one volume that is made lower or narrower step by step, and what receivers may lose by it.
-
 // A volume's contribution to one receiver, in eight bytes, because there are many.
 class TrimPart
 {
 public:
-	TrimPart(uint32_t receiver, float occlusion, VolumeReach needed);
+	TrimPart(uint32_t receiver, float occlusion, VolumeReach needed) : m_receiver(receiver)
+	{
+		const uint32_t fraction = std::bit_cast<uint32_t>(std::max(occlusion, 0x1p-31F)) + 0x1fffU;
+		const uint32_t height = std::min(static_cast<uint32_t>(needed.height * 128.0F), 127U);
+		const uint32_t side = std::min(static_cast<uint32_t>(needed.side * 1024.0F), 1023U);
+		m_bits = std::min((fraction >> 13U) - kLeastExponent, 0x7fffU) << 17U | height << 10U | side;
+	}
 
 	uint32_t receiver() const
 	{
@@ -104,121 +109,6 @@ private:
 
 	uint32_t m_receiver;
 	uint32_t m_bits; // from the top: five bits of exponent and ten of fraction, seven of height, ten of side
-};
-
-// How much each receiver has lost, and may still lose.
-class TrimAllowances
-{
-public:
-	TrimAllowances(const std::vector<double>& sums, double share) : m_share(share), m_receivers(sums.size())
-	{
-		for (std::size_t i = 0; i < sums.size(); ++i)
-		{
-			m_receivers[i].most = share * std::max(sums[i], kTrimFloor);
-		}
-	}
-
-	// The squared fraction of the receiver's total, or of kTrimFloor: a volume's border is an edge, and two faint edges are less
-	// visible than one of their sum.
-	double lossOf(const TrimPart& part) const
-	{
-		const double share = m_share * part.occlusion() / m_receivers[part.receiver()].most;
-		return share * share;
-	}
-
-	bool canTake(const TrimPart& part) const
-	{
-		const Receiver& receiver = m_receivers[part.receiver()];
-		return receiver.lost + part.occlusion() <= receiver.most;
-	}
-
-	void take(const TrimPart& part)
-	{
-		m_receivers[part.receiver()].lost += part.occlusion();
-	}
-
-	void giveBack(const TrimPart& part)
-	{
-		m_receivers[part.receiver()].lost -= part.occlusion();
-	}
-
-	void describe(TrimCounts& counts) const
-	{
-		for (const Receiver& receiver : m_receivers)
-		{
-			counts.greatest_loss = std::max(counts.greatest_loss, receiver.lost);
-			counts.mean_loss += receiver.lost / static_cast<double>(m_receivers.size());
-		}
-	}
-
-private:
-	struct Receiver // together in memory, since each part accesses another receiver
-	{
-		double lost = 0.0;
-		double most = 0.0;
-	};
-
-	double m_share;
-	std::vector<Receiver> m_receivers;
-};
-
-// A volume that is made smaller step by step.
-class Shrinking
-{
-public:
-	Shrinking() = default; // keeps its reach
-
-	// Keeps a reference to the parts and reorders them.
-	Shrinking(const VolumeSet& volumes, const Occluder& polygon, std::span<TrimPart> parts);
-
-	// Approximate surface of such a volume, in squared distances: four times its average fragments in a view.
-	double surface(VolumeReach reach) const;
-
-	// Repeatedly removes what saves most, while the loss is below `price` per squared distance saved.
-	void shrink(TrimAllowances& allowances, double price);
-
-	// The resulting reach in the steps of files. Parts between it and the next receiver are not lost.
-	VolumeReach finish(TrimAllowances& allowances);
-
-	std::size_t lost() const // number of parts
-	{
-		return m_parts.size() - m_left;
-	}
-
-private:
-	// Ways to make it smaller: lower, narrower, both.
-	static constexpr int kWays = 3;
-	static VolumeReach cutTo(int way, VolumeReach reach, uint32_t along);
-
-	struct Step
-	{
-		double value = 0.0;
-		VolumeReach reach;
-	};
-
-	struct Place
-	{
-		uint64_t order = 0; // distance from the outside, then the lowest receiver
-		uint32_t part = 0;
-
-		bool operator<(const Place& other) const
-		{
-			return order < other.order;
-		}
-	};
-
-	Place placeOf(int way, uint32_t part) const;
-	void findFirst();
-	void look(int way, const TrimAllowances& allowances, double price, Step& best) const;
-
-	std::span<TrimPart> m_parts; // remaining parts first, then lost ones
-	std::size_t m_left = 0;
-	std::array<uint32_t, kWays> m_first{}; // the outermost remaining part of each way
-	double m_area = 0.0;                   // polygon area, in squared distances
-	double m_outline = 0.0;                // polygon perimeter, in distances
-	double m_mitres = 0.0;                 // growth at corners, in squares of the side
-	double m_sides = 1.0;
-	VolumeReach m_reach;
 };
 
 } // namespace nook

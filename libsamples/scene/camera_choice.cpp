@@ -14,7 +14,7 @@
 // - varied: from the plane that fills most of the picture: 1 if it fills a third or less, 0.2 from three quarters on.
 // - seen: fraction of rays that hit a surface, 1 from 80 % on.
 // - clear: (1 − fraction of rays that hit one nearer than 0.4 standing heights)³.
-// - facing: 1 − 0.9 × fraction of one-sided surfaces seen from behind.
+// - facing: 1 − 0.9 × fraction of opaque surfaces seen from behind.
 // - depths: entropy of depth in half octaves, 1 for eight equally filled ones.
 // - normals: entropy of the normal over 26 directions, 1 for eight equally filled ones.
 // - edges: fraction of adjacent rays with a depth jump of more than a tenth, 1 from 15 % on.
@@ -337,7 +337,7 @@ struct Sample
 	double depth = 0.0; // 0: sky
 	glm::dvec3 position{0.0};
 	glm::dvec3 normal{0.0};
-	bool one_sided = false;
+	bool opaque = false;
 	bool front = true;
 	uint64_t cell = 0;
 };
@@ -395,7 +395,7 @@ Samples lookAt(const Tracer& tracer, const Site& site, const CameraCandidate& ca
 			const double area = glm::length(across);
 			sample.depth = std::max(hit.distance, 1e-300); // the direction's z is −1
 			sample.normal = area > 0.0 ? across * ((hit.front ? 1.0 : -1.0) / area) : glm::dvec3(0.0);
-			sample.one_sided = !level.material_list[level.materials[hit.triangle]].two_sided;
+			sample.opaque = level.material_list[level.materials[hit.triangle]].alpha_mode == AlphaMode::opaque;
 			sample.front = hit.front;
 			sample.position = candidate.eye + way * hit.distance;
 			sample.cell = cellOf(site, sample.position);
@@ -477,7 +477,7 @@ Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candi
 	Sight sight;
 	int hits = 0;
 	int near = 0;
-	int one_sided = 0;
+	int opaque = 0;
 	int backs = 0;
 	std::array<int, 64> depths{};
 	std::array<int, 27> normals{};
@@ -489,8 +489,8 @@ Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candi
 		}
 		hits += 1;
 		near += sample.depth < candidate.clearance ? 1 : 0;
-		one_sided += sample.one_sided ? 1 : 0;
-		backs += sample.one_sided && !sample.front ? 1 : 0;
+		opaque += sample.opaque ? 1 : 0;
+		backs += sample.opaque && !sample.front ? 1 : 0;
 		const double half_octaves =
 			std::floor(2.0 * logOf(std::max(sample.depth / site.diagonal, 1e-12)) * (1.0 / 0.6931471805599453));
 		depths[static_cast<std::size_t>(std::clamp(half_octaves + 56.0, 0.0, 63.0))] += 1;
@@ -510,7 +510,7 @@ Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candi
 	sight.cells.erase(std::unique(sight.cells.begin(), sight.cells.end()), sight.cells.end());
 	const double seen = std::min(1.0, hits / (0.8 * static_cast<double>(samples.size())));
 	const double clear = 1.0 - static_cast<double>(near) / static_cast<double>(samples.size());
-	const double facing = 1.0 - (one_sided > 0 ? 0.9 * backs / one_sided : 0.0);
+	const double facing = 1.0 - (opaque > 0 ? 0.9 * backs / opaque : 0.0);
 	const glm::dvec2 edges = edgesOf(samples);
 	const double interest = 0.25 * spreadOf(depths, 8.0) + 0.20 * spreadOf(normals, 8.0) + 0.30 * std::min(1.0, edges.x / 0.15) +
 							0.25 * std::min(1.0, edges.y / 0.15);

@@ -532,9 +532,28 @@ TEST_CASE("volume: a masked polygon's alpha is that of its own part of the textu
 		return glm::dvec3(u, v, 0.0);
 	};
 	maker.grid(4, plain, everywhere);
-	const Occluding merged = occluders(maker.level);
-	REQUIRE(merged.counts.polygons == 1); // one texture mapping: merged
-	REQUIRE(merged.occluders.polygons[0].alpha == Approx(0.75).margin(0.005));
+	const Occluding whole = occluders(maker.level);
+	REQUIRE(whole.counts.polygons == 1); // one texture mapping: merged
+	REQUIRE(whole.occluders.polygons[0].alpha == Approx(0.75).margin(0.005));
+	nook::OccluderSettings gaps;
+	gaps.gap_halvings = 4;
+	const Occluding merged = occluders(maker.level, gaps);
+	REQUIRE(merged.counts.uncut == merged.counts.polygons);
+	double solid = 0.0;
+	for (const nook::Occluder& polygon : merged.occluders.polygons)
+	{
+		REQUIRE((polygon.alpha < 0.05F || polygon.alpha > 0.95F));
+		solid += polygon.alpha * 0.5 * glm::length(nook::areaVector(merged.occluders.cornersOf(polygon)));
+	}
+	REQUIRE(solid == Approx(0.75 * areaOf(maker.level)).epsilon(0.01));
+	for (std::size_t i = 0; i < maker.level.masks[0].alpha.size(); ++i) // a net: no part differs from the whole
+	{
+		maker.level.masks[0].alpha[i] = (i + i / 64) % 2 == 0 ? 0 : 255;
+	}
+	const Occluding net = occluders(maker.level, gaps);
+	REQUIRE(net.counts.polygons == 1);
+	REQUIRE(net.occluders.polygons[0].alpha == Approx(0.5).margin(0.02));
+	maker.level.masks[0] = mask;
 	nook::OccluderSettings single;
 	single.merge = false;
 	const Occluding cut = occluders(maker.level, single); // the column from 0 to 1/4 is gone, except for the line with mixed alpha

@@ -54,7 +54,9 @@ void visit(Archive& archive, TrimCounts& counts)
 namespace
 {
 
-constexpr double kMaskMore = 0.25;   // increase of the masks' error that --detail auto allows
+constexpr int kGapHalvings = 5;                                 // of leaves in masks; tuned on a pine and a town with creepers
+constexpr std::ptrdiff_t kMostParts = std::ptrdiff_t{1} << 21U; // halvings of masked triangles end where they may become more
+constexpr double kMaskMore = 0.25;                              // increase of the masks' error that --detail auto allows
 constexpr double kMaskError = 0.015; // and an error that it allows in any case: about that of all polygons (levels.md)
 constexpr int kMaskDirections = 128; // as aov-mask by default
 
@@ -223,10 +225,22 @@ void chooseDetailOf(BuiltVolumes& built, const Level& level, const Tracer& trace
 	occluding.detail = built.detail->detail;
 }
 
+int gapHalvings(const Level& level)
+{
+	const auto masked = std::count_if(level.materials.begin(), level.materials.end(),
+									  [&level](auto material) { return level.material_list[material].mask >= 0; });
+	int halvings = kGapHalvings;
+	for (; halvings > 0 && masked << halvings > kMostParts; --halvings)
+	{
+	}
+	return halvings;
+}
+
 void findOccluders(BuiltVolumes& built, const Level& level, const Tracer* tracer, const VolumeSettings& settings,
 				   const RunSettings& run)
 {
 	OccluderSettings occluding = settings.occluders;
+	occluding.gap_halvings = settings.masks ? gapHalvings(level) : 0;
 	occluding.distance_m = settings.distance_m;
 	occluding.before_cutting = [&](uint64_t pieces)
 	{

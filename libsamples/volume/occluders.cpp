@@ -236,6 +236,9 @@ Proxies proxiesOf(const Level& level, std::span<const uint8_t> may_change, doubl
 constexpr std::size_t kSoupBlock = std::size_t{1} << 12U;
 constexpr uint64_t kMostPieces = uint64_t{1} << 29U; // each cut adds four corners, whose number must fit 32 bits
 
+constexpr double kGaps = 0.8;  // coverage below which a polygon has gaps
+constexpr double kAlike = 0.1; // parts whose coverage differs by less from the whole remain one polygon: nets, fine leaves
+
 // Output of one block of triangles.
 struct Made
 {
@@ -243,6 +246,29 @@ struct Made
 	std::vector<uint32_t> looks; // for each polygon a triangle with its material and texture mapping
 	OccluderCounts counts;
 };
+
+void append(Occluders& to, std::vector<uint32_t>& looks, Made& made)
+{
+	looks.insert(looks.end(), made.looks.begin(), made.looks.end());
+	const auto first = static_cast<uint32_t>(to.corners.size());
+	for (Occluder occluder : made.occluders.polygons)
+	{
+		occluder.first_corner += first;
+		to.polygons.push_back(occluder);
+	}
+	to.corners.insert(to.corners.end(), made.occluders.corners.begin(), made.occluders.corners.end());
+	made.occluders = {};
+	made.looks = {};
+}
+
+void count(OccluderCounts& to, const OccluderCounts& made)
+{
+	to.two_sided += made.two_sided;
+	to.regions += made.regions;
+	to.with_holes += made.with_holes;
+	to.fallbacks += made.fallbacks;
+	to.clear += made.clear;
+}
 
 class Merger
 {
@@ -312,11 +338,34 @@ private:
 		Occluder occluder;
 		occluder.triangle = m_soup.sources.empty() ? look : m_soup.sources[look];
 		occluder.two_sided = m_surface.two_sided[look] != 0;
+		addMasked(occluder, corners, look, m_settings.gap_halvings, made);
+	}
+
+	// With OccluderSettings::gap_halvings.
+	void addMasked(Occluder& occluder, std::span<const glm::dvec3> corners, uint32_t look, int halvings, Made& made) const
+	{
 		const double alpha = alphaOf(m_soup, look, corners);
 		if (alpha < kClear)
 		{
 			made.counts.clear += 1;
 			return;
+		}
+		if (alpha > kAlike && alpha < kGaps && halvings > 0)
+		{
+			Made halves;
+			const auto [along, across] = extentsOf(corners);
+			for (const std::vector<glm::dvec3>& half : halvedPolygon(corners, 0.999 * std::max(along, across), kMaxOccluderCorners))
+			{
+				addMasked(occluder, half, look, halvings - 1, halves);
+			}
+			if (halves.counts.clear > 0 ||
+				std::any_of(halves.occluders.polygons.begin(), halves.occluders.polygons.end(),
+							[alpha](const Occluder& half) { return std::fabs(half.alpha - alpha) > kAlike; }))
+			{
+				count(made.counts, halves.counts);
+				append(made.occluders, made.looks, halves);
+				return;
+			}
 		}
 		occluder.alpha = static_cast<float>(alpha);
 		made.occluders.add(occluder, corners);
@@ -490,29 +539,6 @@ private:
 	std::vector<uint32_t> m_next;
 	std::vector<uint32_t> m_labels;
 };
-
-void append(Occluders& to, std::vector<uint32_t>& looks, Made& made)
-{
-	looks.insert(looks.end(), made.looks.begin(), made.looks.end());
-	const auto first = static_cast<uint32_t>(to.corners.size());
-	for (Occluder occluder : made.occluders.polygons)
-	{
-		occluder.first_corner += first;
-		to.polygons.push_back(occluder);
-	}
-	to.corners.insert(to.corners.end(), made.occluders.corners.begin(), made.occluders.corners.end());
-	made.occluders = {};
-	made.looks = {};
-}
-
-void count(OccluderCounts& to, const OccluderCounts& made)
-{
-	to.two_sided += made.two_sided;
-	to.regions += made.regions;
-	to.with_holes += made.with_holes;
-	to.fallbacks += made.fallbacks;
-	to.clear += made.clear;
-}
 
 // Cuts polygons that exceed settings.extent.
 void cutLong(Occluding& result, const Soup& soup, const std::vector<uint32_t>& looks, const OccluderSettings& settings)

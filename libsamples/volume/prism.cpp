@@ -133,6 +133,24 @@ void prismOf(std::span<const glm::dvec3> corners, glm::dvec3 front, const Volume
 namespace nook::detail
 {
 
+std::array<double, 2> extentsOf(std::span<const glm::dvec3> corners)
+{
+	const auto [x, y] = axesOf(corners);
+	std::array<double, 2> extents{};
+	for (std::size_t i = 0; i < 2; ++i)
+	{
+		double least = 0.0;
+		double most = 0.0;
+		for (const glm::dvec3 corner : corners)
+		{
+			least = std::min(least, glm::dot(i == 0 ? x : y, corner - corners[0]));
+			most = std::max(most, glm::dot(i == 0 ? x : y, corner - corners[0]));
+		}
+		extents[i] = most - least;
+	}
+	return extents;
+}
+
 double halvesOf(std::span<const glm::dvec3> corners, double longest_m)
 {
 	const auto is_near = [&](glm::dvec3 corner)
@@ -143,18 +161,11 @@ double halvesOf(std::span<const glm::dvec3> corners, double longest_m)
 	{
 		return 1.0;
 	}
-	const auto [x, y] = axesOf(corners);
+	const auto [along, across] = extentsOf(corners);
 	double count = 1.0;
-	for (const glm::dvec3 axis : {x, y})
+	for (const double extent : {along, across})
 	{
-		double least = 0.0;
-		double most = 0.0;
-		for (const glm::dvec3 corner : corners)
-		{
-			least = std::min(least, glm::dot(axis, corner - corners[0]));
-			most = std::max(most, glm::dot(axis, corner - corners[0]));
-		}
-		for (double length = most - least; length > longest_m && count < 1e15; length *= 0.5)
+		for (double length = extent; length > longest_m && count < 1e15; length *= 0.5)
 		{
 			count *= 2.0;
 		}

@@ -181,4 +181,7 @@ std::vector<std::vector<glm::dvec3>> halvedPolygon(std::span<const glm::dvec3> c
 // Upper bound of the number of pieces.
 double halvesOf(std::span<const glm::dvec3> corners, double longest_m);
 
+// Extents of a polygon along its longest edge and across it.
+std::array<double, 2> extentsOf(std::span<const glm::dvec3> corners);
+
 } // namespace nook::detail

@@ -267,7 +267,7 @@ std::string readFile(const std::string& path)
 std::string hashOfFile(const std::string& path)
 {
 	ContentHash hash;
-	readBlocks(path, [&hash](std::string_view block) { hash.add(std::as_bytes(std::span(block))); });
+	readBlocks(path, [&hash](std::string_view block) { hash.add(std::as_bytes(std::span(block.data(), block.size()))); });
 	return hash.text();
 }
 

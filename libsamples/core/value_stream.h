@@ -109,7 +109,7 @@ template <class Value> void send(const Value& value, ValueWriter& to)
 	Archive archive([&to](void* data, std::size_t size) { to.bytes(data, size); }, false, 0);
 	archive(const_cast<Value&>(value)); // NOLINT: writing changes nothing
 }
-template <class Value> void receive(Value& value, ValueReader& from, std::size_t most_bytes = std::size_t{1} << 32U)
+template <class Value> void receive(Value& value, ValueReader& from, std::size_t most_bytes = UINT32_MAX)
 {
 	Archive archive([&from](void* data, std::size_t size) { from.bytes(data, size); }, true, most_bytes);
 	archive(value);

@@ -9,7 +9,6 @@
 #include "volume/volumes.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -66,7 +65,7 @@ class TrimPart
 public:
 	TrimPart(uint32_t receiver, float occlusion, VolumeReach needed) : m_receiver(receiver)
 	{
-		const uint32_t fraction = std::bit_cast<uint32_t>(std::max(occlusion, 0x1p-31F)) + 0x1fffU;
+		const uint32_t fraction = bitsAs<uint32_t>(std::max(occlusion, 0x1p-31F)) + 0x1fffU;
 		const uint32_t height = std::min(static_cast<uint32_t>(needed.height * 128.0F), 127U);
 		const uint32_t side = std::min(static_cast<uint32_t>(needed.side * 1024.0F), 1023U);
 		m_bits = std::min((fraction >> 13U) - kLeastExponent, 0x7fffU) << 17U | height << 10U | side;

@@ -289,6 +289,10 @@ vec4 nookSlice(ivec2 pixel, float depth, float radius, vec2 scale, vec3 sight, v
 	vec2 side = vec2(1.0f, -1.0f);
 	vec4 edge = vec4(1.0f + sine, 1.0f - sine, 1.0f + sine, 1.0f - sine);
 	vec4 tilt = vec4(tilted, -tilted, tilted, -tilted);
+	// The surfaces of a step lie evenly between the previous step and itself. With up to four steps, which are far apart, rays agree
+	// better where more of them lie at the previous one.
+	float nearer = 4 > 4 ? 0.5f : 2.0f / 3.0f;
+	float farther = 4 > 4 ? 0.5f : 1.0f / 3.0f;
 	uint open = 2147483647u;
 	float closed = 0.0f;
 	float nearest = nookSliceStep(0.0f, pixels);
@@ -328,7 +332,7 @@ vec4 nookSlice(ivec2 pixel, float depth, float radius, vec2 scale, vec3 sight, v
 		open = open - opposite;
 		vec2 known = vec2(near_x.x == wanted_x.x && near_y.x == wanted_y.x ? 1.0f : 0.5f,
 						  near_x.y == wanted_x.y && near_y.y == wanted_y.y ? 1.0f : 0.5f);
-		vec2 counts = known * (1.0f - (1.0f / 3.0f + 2.0f / 3.0f * before / place) * distance);
+		vec2 counts = known * (1.0f - (farther + nearer * before / place) * distance);
 		before = place;
 		closed += float(nookSliceBitCount(ahead)) * counts.x;
 		closed += float(nookSliceBitCount(opposite)) * counts.y;

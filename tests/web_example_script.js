@@ -35,6 +35,6 @@ function floatsOf(expression, uniforms) {
 const nook_depths = page.frame.depthTexture;
 return { width, height, patterns: [], projection: page.camera.projectionMatrix.elements, pictures: [
 	{ words: 'depth', values: floatsOf('nookDepth(at)', { nook_depths }) },
-	{ words: 'error', values: floatsOf('nookDepth(at) < NOOK_SKY ? nookDepthError(nookDepth(at)) : 0.0', { nook_depths }) },
+	{ words: 'error', values: floatsOf('nookDepth(at) < NOOK_SKY ? 0.5 * nookSlack(nookDepth(at), 0.0) : 0.0', { nook_depths }) },
 	{ words: 'visibility', values: floatsOf('nookVisibility(at)', { nook_cells: page.visibility.texture }) },
 ] };

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Usage: translate.py MODULE.glsl FUNCTION OUT.shader. Translates a module of `nook emit --glsl 330 --block floats` to the shading
-# language of Godot 3, which has no uniform blocks, no macros and no suffix f, and writes a canvas shader that draws one of its passes.
+# language of Godot 3, which has no uniform blocks, macros, hexadecimal numbers or suffix f, and writes a canvas shader that draws one
+# of its passes.
 import re
 import sys
 
@@ -19,6 +20,8 @@ text = re.sub(r"#.*", "", text)
 for name, parameter, body in macros:
     pattern = rf"\b{name}\b" + (r"\((\w+)\)" if parameter else "")
     text = re.sub(pattern, lambda use: re.sub(rf"\b{parameter}\b", use[1], body) if parameter else body, text)
+text = re.sub(r"\b0x[0-9a-f]+", lambda number: str(int(number[0], 16)), text)
+text = re.sub(r"\b(\d{5})(\d{3})\.0f?\b", r"(\g<1>000.0 + \2.0)", text)  # Godot 3 keeps six digits of a float
 text = re.sub(r"(\d)f\b", r"\1", text)
 text = re.sub(r"\n\s*\n+", "\n", text)
 with open(out, "w", encoding="utf-8") as file:

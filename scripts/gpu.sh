@@ -38,7 +38,7 @@ bundle()
 	mkdir -p "$out/bin" "$out/lib/nook" "$out/libraries" "$out/levels"
 	cp "$0" "$out/gpu.sh"
 	cp "$nook" "$out/bin/nook"
-	for worker in level exr picture; do
+	for worker in level picture; do
 		cp "$(ls "$(dirname "$nook")"/../lib/nook/nook_${worker}_worker "$(dirname "$nook")"/../libsamples/core/nook_${worker}_worker 2>/dev/null)" "$out/lib/nook/"
 	done
 	tests=$(dirname "$nook")/../tests/nook_tests

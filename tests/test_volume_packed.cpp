@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "core/random.h"
 #include "core/text.h"
 #include "scene/load.h"
@@ -309,8 +310,8 @@ double walked(const nook_volumes::Volumes& volumes)
 		for (uint32_t i = cluster.first_index; i < cluster.first_index + cluster.index_count; ++i)
 		{
 			const uint32_t at = volumes.indices()[i];
-			sum += volumes.hasPrisms() ? volumes.vertices()[cluster.first_vertex + at].x
-									   : volumes.corners()[cluster.first_corner + at].x;
+			sum += volumes.hasPrisms() || volumes.sharesCorners() ? volumes.vertices()[cluster.first_vertex + at].x
+																  : volumes.corners()[cluster.first_corner + at].x;
 		}
 	}
 	return sum;
@@ -372,7 +373,7 @@ TEST_CASE("emit: volumes come back from their file as 16 bits left them, in both
 				CHECK(facts.layout == layout);
 				CHECK(facts.compressed == compress);
 				CHECK(facts.greatest_error_m == file.packed.greatest_error_m);
-				CHECK(facts.vertices == file.packed.vertices.size());
+				CHECK(facts.vertices == (layout == VolumeLayout::prisms ? file.packed.vertices.size() : 0));
 				CHECK(facts.indices == file.packed.indices.size());
 				nook_volumes::Volumes opened;
 				REQUIRE(ExactBytes(file.bytes).open(opened) == nullptr);
@@ -384,6 +385,47 @@ TEST_CASE("emit: volumes come back from their file as 16 bits left them, in both
 		CHECK(sizes["prisms compressed"] < sizes["prisms"]);
 		CHECK(sizes["polygons"] < sizes["prisms"]);
 	}
+}
+
+TEST_CASE("emit: compressed polygons share corners, and come back as they went", "[emit][volume]")
+{
+	const TemporaryFolder folder;
+	VolumeSet volumes = randomVolumes(0);
+	constexpr int kSide = 20;
+	for (int i = 0; i < kSide * kSide; ++i) // a honeycomb on a slope, and its triangles above
+	{
+		const glm::dvec2 at(2 * (i % kSide) + i / kSide, 2 * (i / kSide));
+		std::vector<glm::dvec3> corners;
+		for (const glm::dvec2 corner : {glm::dvec2(0, 1), {1, 0}, {2, 1}, {2, 2}, {1, 3}, {0, 2}})
+		{
+			corners.emplace_back(0.0625 * (at + corner), 0.01 * (at.x + corner.x));
+		}
+		volumes.occluders.add({}, corners);
+		for (glm::dvec3& corner : corners)
+		{
+			corner.z += 0.3;
+		}
+		volumes.occluders.add({}, std::vector{corners[0], corners[2], corners[4]});
+	}
+	volumes = clustered(volumes);
+	const VolumeSet plain = unpacked(packVolumes(volumes, {}, {}), volumes);
+	const VolumeFile file = volumeGlb(volumes, {VolumeLayout::polygons, true}, "level", "nook test", {});
+	CHECK(2 * file.packed.vertices.size() < plain.occluders.corners.size());
+	writeFile(folder / "v.glb", file.bytes);
+	const VolumeSet read = readVolumes(folder / "v.glb");
+	REQUIRE(read.occluders.polygons.size() == plain.occluders.polygons.size());
+	for (std::size_t i = 0; i < plain.occluders.polygons.size(); ++i)
+	{
+		const std::span<const glm::dvec3> expected = plain.occluders.cornersOf(plain.occluders.polygons[i]);
+		const std::span<const glm::dvec3> found = read.occluders.cornersOf(read.occluders.polygons[i]);
+		std::vector<glm::dvec3> turned(found.begin(), found.end());
+		const auto first = std::find(turned.begin(), turned.end(), expected[0]); // the codec may start at another corner
+		REQUIRE(first != turned.end());
+		std::rotate(turned.begin(), first, turned.end());
+		REQUIRE(std::equal(turned.begin(), turned.end(), expected.begin(), expected.end()));
+	}
+	const Level scene = loadLevel(folder / "v.glb", {}, {}).level;
+	CHECK(scene.triangles.size() == file.packed.indices.size() / 3);
 }
 
 TEST_CASE("emit: a reader without a decoder refuses compressed volumes and reads others", "[emit][volume]")
@@ -444,12 +486,15 @@ TEST_CASE("emit: the scene of a volume file is what its arrays hold", "[emit][vo
 	}
 }
 
+const std::array<VolumeFileSettings, 3> kPrismsPackedShared{
+	{{VolumeLayout::prisms, false}, {VolumeLayout::prisms, true}, {VolumeLayout::polygons, true}}};
+
 TEST_CASE("emit: every truncation of a volume file is refused", "[emit][volume]")
 {
 	const VolumeSet volumes = clustered(randomVolumes(12), 5);
-	for (const bool compress : {false, true})
+	for (const VolumeFileSettings& settings : kPrismsPackedShared)
 	{
-		const std::string whole = glbOf(volumes, {VolumeLayout::prisms, compress});
+		const std::string whole = glbOf(volumes, settings);
 		for (std::size_t size = 0; size < whole.size(); ++size)
 		{
 			std::string part = whole.substr(0, size);
@@ -482,12 +527,11 @@ TEST_CASE("emit: volume files with some bytes changed are refused or safe to use
 	Random random(3);
 	std::size_t refused = 0;
 	std::size_t used = 0;
-	for (int round = 0; round < 4000; ++round)
+	const std::vector<std::string> wholes =
+		mapped(kPrismsPackedShared, [&](const VolumeFileSettings& settings) { return glbOf(volumes, settings); });
+	for (int round = 0; round < 6000; ++round)
 	{
-		const bool compress = round % 2 == 1;
-		static const std::array<std::string, 2> kWhole{glbOf(volumes, {VolumeLayout::prisms, false}),
-													   glbOf(volumes, {VolumeLayout::prisms, true})};
-		std::string changed = kWhole[compress ? 1 : 0];
+		std::string changed = wholes[static_cast<std::size_t>(round) / 24 % 3];
 		uint32_t text = 0;
 		std::memcpy(&text, changed.data() + 12, sizeof text);
 		for (int i = 0; i < 2; ++i)

@@ -15,6 +15,11 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <unordered_map>
+#include <utility>
+
+#define GLM_ENABLE_EXPERIMENTAL
+#include <glm/gtx/hash.hpp>
 
 namespace nook
 {
@@ -23,11 +28,13 @@ namespace
 
 constexpr double kMost = 65535.0;
 
-// A micrometre, finer than levels in metres. For volumes that reach less than 16 384 micrometres, that fraction of the reach: a
-// polygon without area in steps would be lost.
-double leastStep(double distance_m)
+// At least a micrometre, or for volumes that reach less than 16 384 of them, that fraction of the reach. Larger where that only
+// saves bytes: half a step is less than the distance that receivers keep from a polygon's plane (1e-4 δ), and tilts a polygon that
+// is `size_m` across by less than a degree.
+double leastStep(double distance_m, double size_m)
 {
-	return std::min(0x1p-20, std::ldexp(1.0, std::ilogb(distance_m) - 14));
+	const double least = std::min(0x1p-20, std::ldexp(1.0, std::ilogb(distance_m) - 14));
+	return std::max(least, std::ldexp(1.0, std::ilogb(std::min(distance_m * 0x1p-13, std::max(size_m * 0x1p-6, least)))));
 }
 
 // Origin and step of 16-bit coordinates. Steps are powers of two and origins multiples of them, so that coordinates that are such
@@ -63,11 +70,11 @@ struct Frame
 		return numbers;
 	}
 
-	// The grid point, among the 27 around the nearest one, closest to the plane through the point; a small deviation along the
+	// The grid point, among the 27 around the nearest one, closest to the planes through the point; a small deviation along a
 	// plane does not matter. Exact points are kept.
-	glm::u16vec3 packedNear(glm::dvec3 point, glm::dvec3 normal) const
+	glm::u16vec3 packedNear(glm::dvec3 point, std::span<const glm::dvec3> normals) const
 	{
-		constexpr double kAlong = 0.02; // weight of a deviation along the plane relative to one off the plane
+		constexpr double kAlong = 0.02; // weight of a deviation along a plane relative to one off the plane
 		const glm::u16vec3 nearest = packed(point);
 		glm::u16vec3 best = nearest;
 		double least = 1e300;
@@ -79,7 +86,12 @@ struct Frame
 				continue;
 			}
 			const glm::dvec3 off = unpacked(glm::dvec3(numbers)) - point;
-			const double cost = std::fabs(glm::dot(off, normal)) + kAlong * glm::length(off);
+			double cost = 0.0;
+			for (const glm::dvec3 normal : normals)
+			{
+				cost = std::max(cost, std::fabs(glm::dot(off, normal)));
+			}
+			cost += kAlong * glm::length(off);
 			if (cost < least)
 			{
 				least = cost;
@@ -131,23 +143,32 @@ struct PackedPart
 class ClusterPacker
 {
 public:
-	ClusterPacker(const VolumeSet& volumes, const VolumeCluster& cluster, bool prisms)
-		: m_volumes(volumes), m_cluster(cluster), m_prisms(prisms), m_frame(cornerBox(), leastStep(volumes.distance_m))
+	ClusterPacker(const VolumeSet& volumes, const VolumeCluster& cluster, const PackSettings& settings)
+		: m_volumes(volumes), m_cluster(cluster), m_settings(settings), m_least_step(leastStep(volumes.distance_m, smallSize())),
+		  m_frame(cornerBox(), m_least_step)
 	{
 	}
 
 	PackedPart pack()
 	{
-		for (uint32_t i = 0; i < m_cluster.polygon_count; ++i)
+		for (const Occluder& polygon : polygons())
 		{
-			add(m_volumes.occluders.polygons[m_cluster.first_polygon + i]);
+			const glm::dvec3 front = frontOf(cornersOf(polygon));
+			for (const glm::dvec3 corner : cornersOf(polygon))
+			{
+				m_fronts[corner].push_back(front);
+			}
+		}
+		for (const Occluder& polygon : polygons())
+		{
+			add(polygon);
 		}
 		PackedPart part;
-		const Frame points(m_points.empty() ? Bounds{glm::dvec3(0.0), glm::dvec3(0.0)} : m_box, leastStep(m_volumes.distance_m));
+		const Frame points = m_points.empty() ? m_frame : Frame(m_box, m_least_step);
 		store(part.cluster.origin, m_frame.origin);
 		store(part.cluster.step, m_frame.step);
 		storeBox(part.cluster, m_box, m_frame.origin);
-		if (m_prisms)
+		if (m_settings.prisms || m_settings.shared_corners)
 		{
 			store(part.cluster.vertex_origin, points.origin);
 			store(part.cluster.vertex_step, points.step);
@@ -162,12 +183,22 @@ public:
 	}
 
 private:
+	std::span<const Occluder> polygons() const
+	{
+		return std::span(m_volumes.occluders.polygons).subspan(m_cluster.first_polygon, m_cluster.polygon_count);
+	}
+
+	std::span<const glm::dvec3> cornersOf(const Occluder& polygon) const
+	{
+		return m_volumes.occluders.cornersOf(polygon);
+	}
+
 	Bounds cornerBox() const
 	{
 		Bounds box;
-		for (uint32_t i = 0; i < m_cluster.polygon_count; ++i)
+		for (const Occluder& polygon : polygons())
 		{
-			for (const glm::dvec3 corner : m_volumes.occluders.cornersOf(m_volumes.occluders.polygons[m_cluster.first_polygon + i]))
+			for (const glm::dvec3 corner : cornersOf(polygon))
 			{
 				include(box, corner);
 			}
@@ -175,14 +206,32 @@ private:
 		return box;
 	}
 
+	// The square root of a polygon's area, such that a tenth of the polygons are smaller.
+	double smallSize() const
+	{
+		std::vector<double> areas =
+			mapped(polygons(), [this](const Occluder& polygon) { return 0.5 * glm::length(areaVector(cornersOf(polygon))); });
+		const auto tenth = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 10);
+		std::nth_element(areas.begin(), tenth, areas.end());
+		return std::sqrt(*tenth);
+	}
+
+	// Polygons that meet at a corner get the same numbers for it, if these stay close to the plane of each.
+	glm::u16vec3 packed(glm::dvec3 corner, glm::dvec3 front) const
+	{
+		const glm::u16vec3 shared = m_frame.packedNear(corner, m_fronts.at(corner));
+		const double off_m = std::fabs(glm::dot(front, m_frame.unpacked(glm::dvec3(shared)) - corner));
+		return off_m <= 0.5e-4 * m_volumes.distance_m ? shared : m_frame.packedNear(corner, std::span(&front, 1));
+	}
+
 	void add(const Occluder& polygon)
 	{
-		const std::span<const glm::dvec3> corners = m_volumes.occluders.cornersOf(polygon);
+		const std::span<const glm::dvec3> corners = cornersOf(polygon);
 		const glm::dvec3 front = frontOf(corners);
 		std::vector<glm::u16vec3> numbers;
 		for (const glm::dvec3 corner : corners)
 		{
-			numbers.push_back(m_frame.packedNear(corner, front));
+			numbers.push_back(packed(corner, front));
 			m_made.greatest_error_m =
 				std::max(m_made.greatest_error_m, glm::distance(corner, m_frame.unpacked(glm::dvec3(numbers.back()))));
 		}
@@ -263,16 +312,26 @@ private:
 		{
 			include(m_box, point);
 		}
-		if (m_prisms)
+		if (m_settings.prisms)
 		{
 			appendPrism(static_cast<uint32_t>(m_points.size()), static_cast<uint32_t>(corners.size()));
 			m_points.insert(m_points.end(), points.begin(), points.end());
 			m_polygon_of.insert(m_polygon_of.end(), points.size(), index);
 			return;
 		}
-		for (uint32_t i = 2; i < corners.size(); ++i)
+		std::vector<uint32_t> vertices = listOf(corners.size(), [&](std::size_t i) { return first + static_cast<uint32_t>(i); });
+		for (std::size_t i = 0; i < corners.size() && m_settings.shared_corners; ++i)
 		{
-			triangle(first, first + i - 1, first + i);
+			const auto [vertex, added] = m_vertices.try_emplace(corners[i], static_cast<uint32_t>(m_made.vertices.size()));
+			vertices[i] = vertex->second;
+			if (added)
+			{
+				m_made.vertices.push_back({numbers[i].x, numbers[i].y, numbers[i].z, 0});
+			}
+		}
+		for (std::size_t i = 2; i < corners.size(); ++i)
+		{
+			triangle(vertices[0], vertices[i - 1], vertices[i]);
 		}
 	}
 
@@ -304,13 +363,16 @@ private:
 
 	const VolumeSet& m_volumes;
 	const VolumeCluster& m_cluster;
-	bool m_prisms;
+	const PackSettings& m_settings;
+	double m_least_step;
 	Frame m_frame;
 	PackedVolumes m_made;
-	std::vector<glm::dvec3> m_corners;  // of the last polygon, decoded
-	Bounds m_box;                       // bounds of all volume points
-	std::vector<glm::dvec3> m_points;   // of prisms
-	std::vector<uint16_t> m_polygon_of; // polygon of each point
+	std::unordered_map<glm::dvec3, std::vector<glm::dvec3>> m_fronts; // of the polygons at a corner
+	std::unordered_map<glm::dvec3, uint32_t> m_vertices;              // of shared corners, decoded
+	std::vector<glm::dvec3> m_corners;                                // of the last polygon, decoded
+	Bounds m_box;                                                     // bounds of all volume points
+	std::vector<glm::dvec3> m_points;                                 // of prisms
+	std::vector<uint16_t> m_polygon_of;                               // polygon of each point
 };
 
 template <class Item> void moveTo(std::vector<Item>& all, std::vector<Item>& some)
@@ -356,8 +418,7 @@ void append(PackedVolumes& all, PackedPart& part)
 struct Item
 {
 	glm::dvec3 middle{0.0};
-	double share = 0.0; // α · area, m²: its contribution to occlusion
-	int kind = 0;       // polygons of different kinds never share a cluster; larger ones first
+	int kind = 0; // polygons of different kinds never share a cluster; larger ones first
 };
 
 // Bounding boxes of volumes are never smaller than δ, so polygons up to that size form one class; each further class is four times
@@ -388,8 +449,7 @@ Item itemOf(const VolumeSet& volumes, const Occluder& polygon)
 	const glm::dvec3 extent = box.most - box.least;
 	const glm::dvec3 area = areaVector(corners);
 	const int size_class = classOf(std::max({extent.x, extent.y, extent.z}), volumes.distance_m);
-	return {0.5 * (box.least + box.most), static_cast<double>(polygon.alpha) * glm::length(area),
-			4 * size_class + (size_class > 0 ? axisOf(area) : 0)};
+	return {0.5 * (box.least + box.most), 4 * size_class + (size_class > 0 ? axisOf(area) : 0)};
 }
 
 // Maximum extent of a cluster's polygon centres along each axis, such that half a step of 16-bit coordinates stays within the
@@ -443,7 +503,7 @@ public:
 		}
 		if (left == 0 || left == order.size())
 		{
-			std::sort(order.begin(), order.end(), [this](uint32_t a, uint32_t b) { return precedes(a, b); });
+			sortAlongCurve(order, least, most - least);
 			ends.push_back(before + order.size());
 			return;
 		}
@@ -452,9 +512,23 @@ public:
 	}
 
 private:
-	bool precedes(uint32_t a, uint32_t b) const
+	// Neighbours follow one another (Morton order), so compressed files are smaller.
+	void sortAlongCurve(std::span<uint32_t> order, glm::dvec3 least, glm::dvec3 extent) const
 	{
-		return m_items[a].share != m_items[b].share ? m_items[a].share > m_items[b].share : a < b;
+		const double size = std::max({extent.x, extent.y, extent.z, 1e-300});
+		std::vector<std::pair<uint32_t, uint32_t>> places;
+		for (const uint32_t i : order)
+		{
+			const glm::uvec3 cell((m_items[i].middle - least) * (1023.0 / size));
+			uint32_t place = 0;
+			for (int bit = 29; bit >= 0; --bit)
+			{
+				place = 2 * place + (cell[2 - bit % 3] >> (bit / 3) & 1U);
+			}
+			places.emplace_back(place, i);
+		}
+		std::sort(places.begin(), places.end());
+		std::transform(places.begin(), places.end(), order.begin(), [](const auto& place) { return place.second; });
 	}
 
 	static int longest(glm::dvec3 extent)
@@ -505,7 +579,7 @@ PackedVolumes packVolumes(const VolumeSet& volumes, const PackSettings& settings
 	{
 		std::vector<PackedPart> parts(std::min(kBatch, volumes.clusters.size() - first));
 		parallelFor(parts.size(), run.threads,
-					[&](std::size_t i) { parts[i] = ClusterPacker(volumes, volumes.clusters[first + i], settings.prisms).pack(); });
+					[&](std::size_t i) { parts[i] = ClusterPacker(volumes, volumes.clusters[first + i], settings).pack(); });
 		for (PackedPart& part : parts)
 		{
 			append(packed, part);

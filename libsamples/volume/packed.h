@@ -19,8 +19,8 @@ struct PackedVolumes
 	std::vector<nook_volumes::Cluster> clusters;
 	std::vector<nook_volumes::Polygon> polygons;
 	std::vector<nook_volumes::Corner> corners;
-	std::vector<nook_volumes::Corner> vertices; // prisms: a polygon's lower ring, then its upper one; empty without prisms
-	std::vector<uint16_t> indices;              // triangles relative to their cluster's first vertex (without prisms: first corner)
+	std::vector<nook_volumes::Corner> vertices; // prisms: a polygon's lower ring, then its upper one; or shared corners; else empty
+	std::vector<uint16_t> indices;              // triangles relative to their cluster's first vertex (without vertices: first corner)
 
 	// Effects of 16-bit rounding.
 	double greatest_error_m = 0.0; // position error of a corner
@@ -33,10 +33,11 @@ struct PackedVolumes
 struct PackSettings
 {
 	bool prisms = false;
+	bool shared_corners = false; // without prisms: vertices are the distinct corners of each cluster
 };
 
-// Corners are rounded to stay close to their polygon's plane, rather than to the nearest grid point: a surface must not be darkened
-// by its own polygon. Requires clusters of at most 2048 polygons. Repacking the result of unpacked() changes no corner.
+// Corners are rounded to stay close to the planes of their polygons, rather than to the nearest grid point: a surface must not be
+// darkened by its own polygon. Requires clusters of at most 2048 polygons. Repacking the result of unpacked() changes no corner.
 PackedVolumes packVolumes(const VolumeSet& volumes, const PackSettings& settings, const RunSettings& run);
 
 // Decodes polygons and clusters; `volumes` supplies distance, curve and so on, and its plane_error_m grows.

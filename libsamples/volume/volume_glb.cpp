@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -32,12 +33,6 @@ constexpr int kUshorts = 5123;     // component type
 constexpr int kVertexData = 34962; // targets of buffer views
 constexpr int kIndexData = 34963;
 
-// Buffer views: the header, then the arrays in the order of nook_volumes::ArrayName.
-constexpr std::size_t viewOf(nook_volumes::ArrayName name)
-{
-	return name + 1;
-}
-
 glm::dvec3 originOf(const VolumeSet& volumes)
 {
 	Bounds bounds;
@@ -57,7 +52,8 @@ public:
 	{
 		std::memcpy(m_header.magic, "NOOKVOLS", sizeof m_header.magic);
 		m_header.version = nook_volumes::kVersion;
-		m_header.flags = (volumes.exact_bounds ? nook_volumes::kExactBounds : 0U) | (prisms() ? nook_volumes::kHasPrisms : 0U);
+		m_header.flags = (volumes.exact_bounds ? nook_volumes::kExactBounds : 0U) | (prisms() ? nook_volumes::kHasPrisms : 0U) |
+						 (sharesCorners() ? nook_volumes::kSharedCorners : 0U);
 		m_header.distance = volumes.distance_m;
 		m_header.ray_distance = volumes.ray_distance_m;
 		std::copy_n(&m_origin.x, 3, m_header.origin);
@@ -73,16 +69,9 @@ public:
 		m_views.push_back({{"name", "nook header"}, {"buffer", 0}, {"byteOffset", 0}, {"byteLength", sizeof(Header)}});
 		addArray(chunk, nook_volumes::kClusters, "nook clusters", m_packed.clusters);
 		addArray(chunk, nook_volumes::kPolygons, "nook polygons", m_packed.polygons);
-		addArray(chunk, nook_volumes::kCorners, "nook corners", m_packed.corners);
+		addArray(chunk, nook_volumes::kCorners, "nook corners", sharesCorners() ? std::vector<Corner>() : m_packed.corners);
 		addArray(chunk, nook_volumes::kIndices, "triangles", m_packed.indices);
-		if (prisms())
-		{
-			addArray(chunk, nook_volumes::kVertices, "prisms", m_packed.vertices);
-		}
-		else
-		{
-			m_header.arrays[nook_volumes::kVertices].stride = sizeof(Corner);
-		}
+		addArray(chunk, nook_volumes::kVertices, prisms() ? "prisms" : "shared corners", m_packed.vertices);
 		std::memcpy(chunk.data(), &m_header, sizeof m_header);
 		if (m_packed.polygons.empty())
 		{
@@ -96,6 +85,17 @@ private:
 	bool prisms() const
 	{
 		return m_settings.layout == VolumeLayout::prisms;
+	}
+
+	bool sharesCorners() const
+	{
+		return m_settings.compress && !prisms();
+	}
+
+	// The array that the scene draws.
+	nook_volumes::ArrayName drawn() const
+	{
+		return prisms() || sharesCorners() ? nook_volumes::kVertices : nook_volumes::kCorners;
 	}
 
 	[[noreturn]] void refuseSize() const
@@ -128,6 +128,11 @@ private:
 							  : name == nook_volumes::kIndices ? nook_volumes::kMeshoptTriangles
 															   : nook_volumes::kMeshoptVertices;
 		m_header.arrays[name] = {chunk.size(), bytes, static_cast<uint32_t>(items.size()), sizeof(Item), encoding};
+		if (items.empty()) // glTF has no empty views
+		{
+			return;
+		}
+		m_view_of[name] = m_views.size();
 		m_views.push_back(viewJson(name, title, chunk.size(), bytes, size));
 		chunk.append(compress ? coded.data() : reinterpret_cast<const char*>(plain), bytes);
 		chunk.resize(padded(chunk.size()), '\0');
@@ -137,7 +142,7 @@ private:
 	Json viewJson(nook_volumes::ArrayName name, const char* title, std::size_t offset, std::size_t bytes, std::size_t plain_bytes)
 	{
 		Json view{{"name", title}, {"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}};
-		const bool vertices = name == (prisms() ? nook_volumes::kVertices : nook_volumes::kCorners);
+		const bool vertices = name == drawn();
 		if (vertices || name == nook_volumes::kIndices)
 		{
 			view["target"] = vertices ? kVertexData : kIndexData;
@@ -190,8 +195,9 @@ private:
 		for (const Cluster& cluster : m_packed.clusters)
 		{
 			const std::size_t mesh = m_meshes.size();
-			const double(&origin)[3] = prisms() ? cluster.vertex_origin : cluster.origin;
-			const float(&step)[3] = prisms() ? cluster.vertex_step : cluster.step;
+			const bool vertices = drawn() == nook_volumes::kVertices;
+			const double(&origin)[3] = vertices ? cluster.vertex_origin : cluster.origin;
+			const float(&step)[3] = vertices ? cluster.vertex_step : cluster.step;
 			const Json translation{origin[0] - m_header.origin[0], origin[1] - m_header.origin[1], origin[2] - m_header.origin[2]};
 			m_nodes.push_back({{"mesh", mesh}, {"translation", translation}, {"scale", step}});
 			m_meshes.push_back(
@@ -202,9 +208,10 @@ private:
 
 	std::size_t positions(const Cluster& cluster)
 	{
-		const std::vector<Corner>& all = prisms() ? m_packed.vertices : m_packed.corners;
-		const std::size_t first = prisms() ? cluster.first_vertex : cluster.first_corner;
-		const std::size_t count = prisms() ? cluster.vertex_count : cluster.corner_count;
+		const bool vertices = drawn() == nook_volumes::kVertices;
+		const std::vector<Corner>& all = vertices ? m_packed.vertices : m_packed.corners;
+		const std::size_t first = vertices ? cluster.first_vertex : cluster.first_corner;
+		const std::size_t count = vertices ? cluster.vertex_count : cluster.corner_count;
 		glm::ivec3 least(65535);
 		glm::ivec3 most(0);
 		for (std::size_t i = first; i < first + count; ++i)
@@ -213,20 +220,18 @@ private:
 			least = glm::min(least, at);
 			most = glm::max(most, at);
 		}
-		const nook_volumes::ArrayName name = prisms() ? nook_volumes::kVertices : nook_volumes::kCorners;
-		return accessor(viewOf(name), first * sizeof(Corner), count,
+		return accessor(drawn(), first * sizeof(Corner), count,
 						{{"type", "VEC3"}, {"min", {least.x, least.y, least.z}}, {"max", {most.x, most.y, most.z}}});
 	}
 
 	std::size_t indices(const Cluster& cluster)
 	{
-		return accessor(viewOf(nook_volumes::kIndices), std::size_t{cluster.first_index} * 2, cluster.index_count,
-						{{"type", "SCALAR"}});
+		return accessor(nook_volumes::kIndices, std::size_t{cluster.first_index} * 2, cluster.index_count, {{"type", "SCALAR"}});
 	}
 
-	std::size_t accessor(std::size_t view, std::size_t offset, std::size_t count, Json item)
+	std::size_t accessor(nook_volumes::ArrayName name, std::size_t offset, std::size_t count, Json item)
 	{
-		item["bufferView"] = view;
+		item["bufferView"] = m_view_of[name];
 		item["byteOffset"] = offset;
 		item["componentType"] = kUshorts;
 		item["count"] = count;
@@ -262,10 +267,8 @@ private:
 	// Nothing to draw: glTF allows neither empty buffer views nor empty lists.
 	Json emptyRoot(std::string_view level, std::string_view generator, std::size_t chunk_bytes) const
 	{
-		Json described = facts(level);
-		described["views"] = {{"header", 0}};
-		Json root{{"scene", 0}, {"bufferViews", Json::array({m_views[0]})}};
-		root["asset"] = {{"version", "2.0"}, {"generator", generator}, {"extras", {{"nook_volumes", described}}}};
+		Json root{{"scene", 0}, {"bufferViews", m_views}};
+		root["asset"] = {{"version", "2.0"}, {"generator", generator}, {"extras", {{"nook_volumes", facts(level)}}}};
 		root["scenes"] = Json::array({Json::object()});
 		root["buffers"] = Json::array({Json{{"byteLength", chunk_bytes}}});
 		return root;
@@ -285,14 +288,14 @@ private:
 				   {"polygons", m_packed.polygons.size()},
 				   {"corners", m_packed.corners.size()}};
 		facts["compensation"] = {{"range", m_volumes.compensation.range}, {"occlusion", m_volumes.compensation.occlusion}};
-		facts["views"] = {{"header", 0},
-						  {"clusters", viewOf(nook_volumes::kClusters)},
-						  {"polygons", viewOf(nook_volumes::kPolygons)},
-						  {"corners", viewOf(nook_volumes::kCorners)},
-						  {"triangles", viewOf(nook_volumes::kIndices)}};
-		if (prisms())
+		constexpr std::array kNames{"clusters", "polygons", "corners", "triangles", "prisms"};
+		facts["views"] = {{"header", 0}};
+		for (std::size_t name = 0; name < kNames.size(); ++name)
 		{
-			facts["views"]["prisms"] = viewOf(nook_volumes::kVertices);
+			if (m_view_of[name] > 0)
+			{
+				facts["views"][name == nook_volumes::kVertices && !prisms() ? "shared_corners" : kNames[name]] = m_view_of[name];
+			}
 		}
 		return facts;
 	}
@@ -328,7 +331,8 @@ private:
 	const VolumeFileSettings& m_settings;
 	glm::dvec3 m_origin;
 	Header m_header{};
-	std::size_t m_plain_bytes = 0; // size of the buffer without data
+	std::size_t m_plain_bytes = 0;                              // size of the buffer without data
+	std::array<std::size_t, nook_volumes::kArrays> m_view_of{}; // 0: an empty array
 	Json m_views = Json::array();
 	Json m_accessors = Json::array();
 	Json m_meshes = Json::array();
@@ -363,7 +367,8 @@ VolumeFile volumeGlb(const VolumeSet& volumes, const VolumeFileSettings& setting
 {
 	const ProgressCounter stage(run.progress, "file");
 	VolumeFile file;
-	file.packed = packVolumes(volumes, {settings.layout == VolumeLayout::prisms}, run);
+	const bool prisms = settings.layout == VolumeLayout::prisms;
+	file.packed = packVolumes(volumes, {.prisms = prisms, .shared_corners = settings.compress && !prisms}, run);
 	if (file.packed.polygons.empty() && !volumes.occluders.polygons.empty())
 	{
 		throw Error(ExitCode::invalid_input,
@@ -402,9 +407,9 @@ VolumeSet readVolumes(const std::string& path, VolumeFileFacts& facts)
 	facts.level = textAt(json, "/asset/extras/nook_volumes/level");
 	facts.generator = textAt(json, "/asset/generator");
 	facts.layout = file.hasPrisms() ? VolumeLayout::prisms : VolumeLayout::polygons;
-	facts.compressed = header.arrays[nook_volumes::kCorners].encoding != nook_volumes::kPlain;
+	facts.compressed = header.arrays[nook_volumes::kPolygons].encoding != nook_volumes::kPlain;
 	facts.greatest_error_m = header.greatest_error;
-	facts.vertices = file.vertexCount();
+	facts.vertices = file.hasPrisms() ? file.vertexCount() : 0;
 	facts.indices = file.indexCount();
 	facts.bytes = bytes.size();
 

@@ -99,7 +99,7 @@ struct ClusterSettings
 };
 
 // Sorts the polygons and sets the clusters with their bounding boxes. Polygons of very different sizes are separated, those of
-// similar size are close together, and consecutive clusters are neighbours; within a cluster the strongest occluders come first.
+// similar size are close together, and consecutive clusters are neighbours, as are consecutive polygons of a cluster.
 // The order depends only on positions, areas and polygon numbers.
 void clusterVolumes(VolumeSet& volumes, const ClusterSettings& settings, const RunSettings& run);
 

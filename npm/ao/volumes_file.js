@@ -8,7 +8,8 @@
 //	upload(frame.block, frame.seen); // 384 bytes; 16 32-bit integers per cluster
 //	for (const i of frame.inSight()) draw(volumes.clusters[i]);
 
-const kArrays = ['clusters', 'polygons', 'corners', 'indices', 'vertices'], kStrides = [128, 8, 8, 2, 8];
+const kStrides = [128, 8, 8, 2, 8]; // of clusters, polygons, corners, indices, vertices
+const kCompressed = 'compressed arrays, expected a file made without --compress';
 
 function require(holds, what) {
 	if (!holds) throw new RangeError(`volumes: found ${what}`);
@@ -28,13 +29,13 @@ export function readVolumes(buffer) {
 	require(length >= 464 && String.fromCharCode(...bytes.subarray(start, start + 8)) === 'NOOKVOLS', 'glTF without volumes of nook');
 	require(word(start + 8) === 1, 'another version of the format than 1');
 	const flags = word(start + 12), number = at => view.getFloat64(start + at, true);
-	require((flags & ~3) === 0, 'unknown flags');
+	require((flags & ~3) === 0, (flags & ~7) === 0 ? kCompressed : 'unknown flags');
 	const volumes = { exactBounds: (flags & 1) !== 0, hasPrisms: (flags & 2) !== 0, distance: number(16), rayDistance: number(24),
 		planeError: number(64), sumRange: number(72), occlusion: Array.from({ length: 33 }, (_, i) => number(80 + 8 * i)) };
 	const { distance, rayDistance, planeError, sumRange, occlusion } = volumes;
 	require([distance, sumRange].every(one => one >= 1e-30 && one <= 1e30) && [rayDistance, planeError].every(one => one >= 0 && one <= 1e30) &&
 		occlusion.every((one, i) => one >= (i > 0 ? occlusion[i - 1] : 0) && one <= 1), 'numbers out of range in the header');
-	const items = kArrays.map((name, i) => arrayOf(view, start, length, 344 + 24 * i, kStrides[i]));
+	const items = kStrides.map((stride, i) => arrayOf(view, start, length, 344 + 24 * i, stride));
 	volumes.clusters = clustersOf(items[0]);
 	const shorts = ({ bytes: some }) => new Uint16Array(some.buffer, some.byteOffset, some.byteLength / 2);
 	volumes.polygons = new Uint32Array(items[1].bytes.buffer, items[1].bytes.byteOffset, 2 * items[1].count);
@@ -48,7 +49,7 @@ function arrayOf(view, start, length, at, stride) {
 	const count = view.getUint32(start + at + 16, true);
 	require(offset % 16 === 0 && offset <= length && size <= length - offset, 'an array that reaches beyond the file');
 	require(view.getUint16(start + at + 20, true) === stride, 'an array with items of another size');
-	require(view.getUint16(start + at + 22, true) === 0, 'compressed arrays, expected a file made without --compress');
+	require(view.getUint16(start + at + 22, true) === 0, kCompressed);
 	require(count * stride === size, 'an array with another length than its items');
 	const place = view.byteOffset + start + offset;
 	return { count, bytes: place % 16 === 0 ? new Uint8Array(view.buffer, place, size) : new Uint8Array(view.buffer.slice(place, place + size)) };

@@ -28,7 +28,7 @@ std::size_t touched(const nook_volumes::Volumes& volumes)
 			}
 		}
 		const nook_volumes::Corner* const points =
-			volumes.hasPrisms() ? volumes.vertices() + cluster.first_vertex : volumes.corners() + cluster.first_corner;
+			volumes.vertexCount() > 0 ? volumes.vertices() + cluster.first_vertex : volumes.corners() + cluster.first_corner;
 		for (std::size_t k = 0; k < cluster.index_count; ++k)
 		{
 			sum += points[volumes.indices()[cluster.first_index + k]].polygon;

@@ -22,13 +22,14 @@ namespace nook_volumes
 {
 
 constexpr std::uint32_t kVersion = 1;
-constexpr std::uint32_t kExactBounds = 1;  // flag of Header: volumes contain every point with a falloff > 0
-constexpr std::uint32_t kHasPrisms = 2;    // flag of Header: it has prisms; without them indices are of corners of polygons
-constexpr std::uint8_t kTwoSided = 1;      // flag of Polygon: occludes on both sides
-constexpr double kReachSteps = 128.0;      // the other bits of the flags count 1/128 of the distance
-constexpr double kSideSteps = 8.0;         // the upper bits of corner_bits count eighths of that reach
-constexpr std::size_t kKnots = 33;         // knots of the compensation curve
-constexpr std::uint32_t kMostCorners = 16; // maximum corners per polygon
+constexpr std::uint32_t kExactBounds = 1;   // flag of Header: volumes contain every point with a falloff > 0
+constexpr std::uint32_t kHasPrisms = 2;     // flag of Header: it has prisms
+constexpr std::uint32_t kSharedCorners = 4; // flag of Header: polygons share corners, which are stored once, as vertices
+constexpr std::uint8_t kTwoSided = 1;       // flag of Polygon: occludes on both sides
+constexpr double kReachSteps = 128.0;       // the other bits of the flags count 1/128 of the distance
+constexpr double kSideSteps = 8.0;          // the upper bits of corner_bits count eighths of that reach
+constexpr std::size_t kKnots = 33;          // knots of the compensation curve
+constexpr std::uint32_t kMostCorners = 16;  // maximum corners per polygon
 
 // A corner of a polygon, or a vertex of a prism: world position = origin + step * (x, y, z), with origin and step of its cluster;
 // exact in 64 bits.
@@ -70,15 +71,15 @@ inline double sideReachOf(const Polygon& polygon)
 struct Cluster
 {
 	double origin[3];        // origin of corners, world space
-	double vertex_origin[3]; // origin of vertices of prisms
+	double vertex_origin[3]; // origin of vertices
 	float step[3];
 	float vertex_step[3];
 	float least[3]; // bounds of its volumes, relative to `origin`
 	float most[3];
 	std::uint32_t first_polygon, polygon_count;
 	std::uint32_t first_corner, corner_count;
-	std::uint32_t first_vertex, vertex_count; // vertices of prisms; 0 where the file has none
-	std::uint32_t first_index, index_count;   // triangles, relative to first_vertex, or to first_corner without prisms
+	std::uint32_t first_vertex, vertex_count; // vertices of prisms, or shared corners; 0 where the file has neither
+	std::uint32_t first_index, index_count;   // triangles, relative to first_vertex, or to first_corner without vertices
 };
 
 // Where an array is in the file.
@@ -156,6 +157,7 @@ public:
 		{
 			problem = openArray(i, decoders);
 		}
+		problem = problem ? problem : expandCorners();
 		problem = problem ? problem : checkClusters();
 		if (problem)
 		{
@@ -213,6 +215,10 @@ public:
 	bool hasPrisms() const
 	{
 		return (header().flags & kHasPrisms) != 0;
+	}
+	bool sharesCorners() const
+	{
+		return (header().flags & kSharedCorners) != 0;
 	}
 
 	// Position in world space.
@@ -293,7 +299,7 @@ private:
 		{
 			return "another version of the format than 1";
 		}
-		if ((head.flags & ~(kExactBounds | kHasPrisms)) != 0)
+		if ((head.flags & ~(kExactBounds | kHasPrisms | kSharedCorners)) != 0 || (hasPrisms() && sharesCorners()))
 		{
 			return "unknown flags";
 		}
@@ -353,6 +359,92 @@ private:
 		m_items[i] = decoded.data();
 		const int result = decode(decoded.data(), array.count, array.stride, source, static_cast<std::size_t>(array.bytes));
 		return result == 0 ? nullptr : "compressed bytes that cannot be decoded";
+	}
+
+	// Makes the corners of polygons from the triangles of a file that stores shared corners as vertices. A polygon of n corners has
+	// n - 2 triangles; each after its first adds a corner, at an edge that it shares with those before. The decoder may have turned
+	// triangles.
+	const char* expandCorners()
+	{
+		if (!sharesCorners())
+		{
+			return nullptr;
+		}
+		std::uint64_t expected = 0;
+		for (std::size_t i = 0; i < polygonCount(); ++i)
+		{
+			if (cornerCountOf(polygons()[i]) < 3 || cornerCountOf(polygons()[i]) > kMostCorners)
+			{
+				return "a polygon that cannot be";
+			}
+			expected += cornerCountOf(polygons()[i]);
+		}
+		if (cornerCount() != 0 || indexCount() != 3 * (expected - 2 * std::uint64_t{polygonCount()}))
+		{
+			return "other triangles than those of its polygons";
+		}
+		std::vector<unsigned char>& made = m_decoded[kCorners];
+		made.resize(static_cast<std::size_t>(expected) * sizeof(Corner));
+		m_items[kCorners] = made.data();
+		m_count[kCorners] = static_cast<std::size_t>(expected);
+		auto* corner = reinterpret_cast<Corner*>(made.data());
+		const std::uint16_t* triangle = indices();
+		std::size_t polygon = 0;
+		for (std::size_t c = 0; c < clusterCount(); ++c)
+		{
+			const Cluster& cluster = clusters()[c];
+			if (cluster.polygon_count > polygonCount() - polygon || cluster.first_vertex > vertexCount() ||
+				cluster.vertex_count > vertexCount() - cluster.first_vertex)
+			{
+				return "clusters of more than there is";
+			}
+			for (std::uint32_t i = 0; i < cluster.polygon_count; ++i, ++polygon)
+			{
+				const std::uint32_t count = cornerCountOf(polygons()[polygon]);
+				std::uint16_t ring[kMostCorners] = {};
+				if (!joinTriangles(triangle, count, ring))
+				{
+					return "triangles that are no polygon";
+				}
+				triangle += 3 * (count - 2);
+				for (std::uint32_t k = 0; k < count; ++k)
+				{
+					if (ring[k] >= cluster.vertex_count)
+					{
+						return "an index beyond its cluster";
+					}
+					*corner = vertices()[cluster.first_vertex + ring[k]];
+					corner->polygon = static_cast<std::uint16_t>(i);
+					++corner;
+				}
+			}
+		}
+		return polygon == polygonCount() ? nullptr : "clusters of less than there is";
+	}
+
+	static bool joinTriangles(const std::uint16_t* triangle, std::uint32_t count, std::uint16_t (&ring)[kMostCorners])
+	{
+		std::memcpy(ring, triangle, 3 * sizeof *ring);
+		for (std::uint32_t n = 3; n < count; ++n)
+		{
+			triangle += 3;
+			std::uint32_t at = 0; // edge at / 3 of the ring, edge at % 3 of the triangle
+			const auto shares = [&](std::uint32_t pair)
+			{
+				return triangle[pair % 3] == ring[(pair / 3 + 1) % n] && triangle[(pair + 1) % 3] == ring[pair / 3];
+			};
+			while (at < 3 * n && !shares(at))
+			{
+				++at;
+			}
+			if (at == 3 * n)
+			{
+				return false;
+			}
+			std::memmove(ring + at / 3 + 2, ring + at / 3 + 1, (n - 1 - at / 3) * sizeof *ring);
+			ring[at / 3 + 1] = triangle[(at + 2) % 3];
+		}
+		return true;
 	}
 
 	// Each cluster's ranges start where those of the previous cluster end.
@@ -433,11 +525,12 @@ private:
 
 	const char* checkTriangles(const Cluster& cluster) const
 	{
-		if (cluster.index_count % 3 != 0 || (!hasPrisms() && cluster.vertex_count != 0))
+		const bool has_vertices = hasPrisms() || sharesCorners();
+		if (cluster.index_count % 3 != 0 || (!has_vertices && cluster.vertex_count != 0))
 		{
 			return "a cluster with a part of a triangle";
 		}
-		const std::uint32_t most = hasPrisms() ? cluster.vertex_count : cluster.corner_count;
+		const std::uint32_t most = has_vertices ? cluster.vertex_count : cluster.corner_count;
 		for (std::uint32_t i = 0; i < cluster.index_count; ++i)
 		{
 			if (indices()[cluster.first_index + i] >= most)

@@ -236,7 +236,8 @@ Proxies proxiesOf(const Level& level, std::span<const uint8_t> may_change, doubl
 constexpr std::size_t kSoupBlock = std::size_t{1} << 12U;
 constexpr uint64_t kMostPieces = uint64_t{1} << 29U; // each cut adds four corners, whose number must fit 32 bits
 
-constexpr double kGaps = 0.8;  // coverage below which a polygon has gaps
+constexpr double kGaps = 0.8;            // coverage below which a polygon has gaps
+constexpr double kLeastGap = 1.0 / 15.0; // of the distance: polygons up to this size remain whole
 constexpr double kAlike = 0.1; // parts whose coverage differs by less from the whole remain one polygon: nets, fine leaves
 
 // Output of one block of triangles.
@@ -350,10 +351,11 @@ private:
 			made.counts.clear += 1;
 			return;
 		}
-		if (alpha > kAlike && alpha < kGaps && halvings > 0)
+		const auto [along, across] = extentsOf(corners);
+		const bool large = std::max(along, across) > kLeastGap * m_settings.distance_m;
+		if (alpha > kAlike && alpha < kGaps && halvings > 0 && large)
 		{
 			Made halves;
-			const auto [along, across] = extentsOf(corners);
 			for (const std::vector<glm::dvec3>& half : halvedPolygon(corners, 0.999 * std::max(along, across), kMaxOccluderCorners))
 			{
 				addMasked(occluder, half, look, halvings - 1, halves);

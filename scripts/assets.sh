@@ -53,6 +53,7 @@ while [ $# -gt 0 ]; do
 		run reference "$level" --gbuffer "$folder/g-$view.exr" --falloff linear --radius "$radius" --rays 512 -o "$folder/r-$view.exr"
 	done
 	run level "$level" -o "$folder/level.glb"
+	case $level in *.glb) cp "$level" "$folder/level.glb" ;; esac # nook bake adds to this file
 	for fit in points surface; do
 		run bake "$level" --radius "$radius" --falloff linear --rays 64 --fit "$fit" -o "$folder/b.glb"
 		[ "$fit" = points ] && what='bake, values at the vertices' || what='bake'

@@ -15,7 +15,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }' >"$scratch/empty.cpp"
 if ! clang++ -fsanitize=fuzzer,address,undefined "$scratch/empty.cpp" -o "$scratch/empty" >"$scratch/log" 2>&1; then
-	echo "fuzz.sh: skipped: found no clang++ that links libFuzzer, expected one (scripts/setup.sh)" >&2
+	echo "fuzz.sh: skipped: found no clang++ that links libFuzzer, expected one (scripts/setup.sh clang)" >&2
 	exit 77
 fi
 

@@ -1,17 +1,18 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs missing packages for building and testing nook on Debian 12. Quick if nothing is missing.
-# Usage: setup.sh [build] [aarch64] [windows] [wasm] [debian] [targets] [farm] [library] [ogre] [godot] [moderngl] [blender]. `build` leaves out what
+# Usage: setup.sh [build] [aarch64] [windows] [wasm] [debian] [targets] [farm] [library] [ogre] [godot] [moderngl] [blender] [clang]. `build` leaves out what
 # only the tests need, and also works on Debian 13: presets library and patterns. The next three add cross
 # compilers and emulators for ARM64, Windows and the browser, `debian` adds packaging tools, `targets` all four; `farm` adds the
 # engines that scripts/farm.sh starts, `library` the tools for the wheel and its figures, `ogre` and `godot` the engines of these
-# examples, `moderngl` the Python package for a test, `blender` Blender for the test of its add-on.
+# examples, `moderngl` the Python package for a test, `blender` Blender for the test of its add-on, `clang` the second compiler with
+# libFuzzer.
 set -eu
 
 packages="g++ cmake ninja-build make ccache git pkg-config
 	libcgal-dev libboost-dev libeigen3-dev libopenimageio-dev libopenexr-dev libpng-dev libjpeg-dev zlib1g-dev libglm-dev libtbb-dev libcli11-dev nlohmann-json3-dev
 	libmeshoptimizer-dev libdraco-dev libembree-dev libepoxy-dev"
-tests="clang llvm libclang-rt-14-dev libglfw3-dev libegl-dev libegl-mesa0 libgl1-mesa-dri
+tests="libglfw3-dev libegl-dev libegl-mesa0 libgl1-mesa-dri
 	catch2 libbenchmark-dev libvulkan-dev mesa-vulkan-drivers glslang-tools spirv-tools spirv-cross openimageio-tools xz-utils locales qemu-user-static xvfb xauth chromium firefox-esr fonts-dejavu-core mkdocs python3-numpy mono-mcs mono-runtime abigail-tools"
 
 # For Khronos' glTF validator in one test. Other Node.js builds include npm and conflict with Debian's.
@@ -33,9 +34,10 @@ for target in "$@"; do
 	moderngl) packages="$packages python3-moderngl" ;;
 	godot) packages="$packages godot3" ;;
 	blender) packages="$packages blender" ;;
+	clang) packages="$packages clang llvm libclang-rt-14-dev" ;;
 	farm) packages="$packages slurm-wlm munge snakemake procps" ;;
 	*)
-		echo "setup.sh: found '$target', expected build, aarch64, windows, wasm, debian, targets, farm, library, ogre, godot, moderngl, blender or nothing" >&2
+		echo "setup.sh: found '$target', expected build, aarch64, windows, wasm, debian, targets, farm, library, ogre, godot, moderngl, blender, clang or nothing" >&2
 		exit 1
 		;;
 	esac

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: same_bytes_test.sh PROGRAM SOURCE FOLDER [BUILD...]. Builds nook in FOLDER/BUILD (kept to speed up later runs) and compares
 # its outputs with PROGRAM's. BUILD: release_clang, optimised with clang++ (the default), or debug_gcc, unoptimised with g++
-# (without debug information).
+# (without debug information). Exit code 77: no clang++ with libFuzzer.
 set -u
 nook=$1
 source=$2
@@ -23,6 +23,13 @@ build()
 	finish
 }
 
+case $builds_asked in
+*clang*)
+	echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }' >"$folder/empty.cpp"
+	clang++ -fsanitize=fuzzer "$folder/empty.cpp" -o "$folder/empty" 2>/dev/null ||
+		{ echo "skipped: found no clang++ that links libFuzzer, expected one (scripts/setup.sh clang)"; exit 77; }
+	;;
+esac
 mkdir "$folder/here"
 makeSamples "$nook" "$folder/here" 2
 for name in $builds_asked; do

@@ -27,7 +27,7 @@ expect_made 0 "nothing changed"
 nook="$prefix/bin/nook"
 viewer="$out/viewer"
 cd "$folder" || exit 1
-size=320x180
+size=192x108
 for view in "g 1.66427948235" "turned -1.66427948235"; do
 	projection="0.936157208822 0 0 0 0 ${view#* } 0 0 0 0 -1 -1 0 0 -0.2 0"
 	step "G-buffer ${view% *}" "$nook" gbuffer "$out/nook_patterns/viewer/level.glb" --camera main --projection "$projection" --size $size \

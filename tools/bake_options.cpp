@@ -46,10 +46,8 @@ void takeTarget(BakeOptions& options, const std::string& name, const std::string
 	const bool custom = target == BakeTarget::custom && !rest.empty() && isPlainName(rest);
 	const bool plain =
 		target != BakeTarget::texcoord && target != BakeTarget::custom && (colon == std::string::npos || text == "texture:orm");
-	if (word == kBakeTargets.end() || !(set || custom || plain))
-	{
-		refuseValue(name, text, "visibility, color, color-alpha, texcoord:0 to texcoord:7, custom:NAME, texture or texture:orm");
-	}
+	refuseValueIf(word == kBakeTargets.end() || !(set || custom || plain), name, text,
+				  "visibility, color, color-alpha, texcoord:0 to texcoord:7, custom:NAME, texture or texture:orm");
 	options.to = text;
 	options.target = target;
 	options.attribute = set ? "TEXCOORD_" + rest : custom ? (rest[0] == '_' ? "" : "_") + rest : "";
@@ -178,23 +176,15 @@ void declareBake(CLI::App& app, BakeOptions& options)
 void settleBake(BakeOptions& options)
 {
 	BakeSettings& settings = options.settings;
-	if (options.target != BakeTarget::texture && options.texture_px > 0 && isGiven(*options.app, "--to"))
-	{
-		refuse("--to: found '" + options.to + "' with --texture, expected --to texture");
-	}
-	if (options.target == BakeTarget::texture && (isGiven(*options.app, "--max-error") || options.automatic))
-	{
-		refuse((options.automatic ? "--auto" : "--max-error") + std::string(": found with --to texture, expected vertices"));
-	}
-	if (options.unwrap && options.target != BakeTarget::texture && isGiven(*options.app, "--to"))
-	{
-		refuse("--unwrap: found with --to " + options.to + ", expected --to texture");
-	}
+	refuseIf(options.target != BakeTarget::texture && options.texture_px > 0 && isGiven(*options.app, "--to"),
+			 "--to: found '" + options.to + "' with --texture, expected --to texture");
+	refuseIf(options.target == BakeTarget::texture && (isGiven(*options.app, "--max-error") || options.automatic),
+			 (options.automatic ? "--auto" : "--max-error") + std::string(": found with --to texture, expected vertices"));
+	refuseIf(options.unwrap && options.target != BakeTarget::texture && isGiven(*options.app, "--to"),
+			 "--unwrap: found with --to " + options.to + ", expected --to texture");
 	const std::vector<std::string>& files = options.outputs.files;
-	if (options.unwrap && !files.empty() && std::all_of(files.begin(), files.end(), isTextureName))
-	{
-		refuse("--unwrap: found only textures to write, expected a level as well, which has the coordinates");
-	}
+	refuseIf(options.unwrap && !files.empty() && std::all_of(files.begin(), files.end(), isTextureName),
+			 "--unwrap: found only textures to write, expected a level as well, which has the coordinates");
 	options.charts.size_px = options.texture_px > 0 || options.charts.texel_m > 0.0 ? options.texture_px : kStandardTexture;
 	if ((options.target == BakeTarget::texture || options.unwrap) && options.texture_px == 0)
 	{
@@ -208,20 +198,14 @@ void settleBake(BakeOptions& options)
 	const std::string ending = endingOf(options.level.level);
 	for (const std::string& path : options.outputs.files)
 	{
-		if (endingOf(path) == ".gltf" && ending != ".gltf")
-		{
-			refuse(path + ": found the ending of a glTF in text, expected .glb, since the level is none");
-		}
+		refuseIf(endingOf(path) == ".gltf" && ending != ".gltf",
+				 path + ": found the ending of a glTF in text, expected .glb, since the level is none");
 	}
-	if (std::isinf(settings.radius_m) && settings.falloff == Falloff::linear)
-	{
-		refuse("--radius: found 'inf', expected metres, since --falloff linear is a share of it");
-	}
-	if (options.outputs.share && (settings.max_error > 0.0 || options.automatic))
-	{
-		refuse("--share: found with " + std::string(options.automatic ? "--auto" : "--max-error") +
-			   ", expected one of them, since what is next depends on all so far");
-	}
+	refuseIf(std::isinf(settings.radius_m) && settings.falloff == Falloff::linear,
+			 "--radius: found 'inf', expected metres, since --falloff linear is a share of it");
+	refuseIf(options.outputs.share && (settings.max_error > 0.0 || options.automatic),
+			 "--share: found with " + std::string(options.automatic ? "--auto" : "--max-error") +
+				 ", expected one of them, since what is next depends on all so far");
 	if (options.automatic)
 	{
 		settings.max_error = options.max_bytes > 0 || settings.max_error > 0.0 ? settings.max_error : kStandardError;

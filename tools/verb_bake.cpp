@@ -371,11 +371,9 @@ void checkBytes(const BakeOptions& options, const BakeFile& target, const Level&
 	in.visibility = values;
 	in.back = options.settings.sides == BakeSides::separate ? in.visibility : std::span<const float>();
 	const std::size_t bytes = bakeInto(target.file, target.places, in, {}).bytes_added;
-	if (options.max_bytes > 0 && bytes > options.max_bytes)
-	{
-		refuse("--max-bytes: found " + std::to_string(options.max_bytes) + ", expected at least " + std::to_string(bytes) +
-			   ", which values at the vertices take");
-	}
+	refuseIf(options.max_bytes > 0 && bytes > options.max_bytes, "--max-bytes: found " + std::to_string(options.max_bytes) +
+																	 ", expected at least " + std::to_string(bytes) +
+																	 ", which values at the vertices take");
 }
 
 // Two rows of a table, and the same for programs.

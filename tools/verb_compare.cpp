@@ -96,11 +96,9 @@ template <class Picture> std::vector<uint8_t> readMask(const std::string& path, 
 		return t_call != nullptr ? t_call->counted : std::vector<uint8_t>{};
 	}
 	SurfaceMask mask = readSurfaceMask(path);
-	if (mask.width_px != reference.width_px || mask.height_px != reference.height_px)
-	{
-		refuseInput(path + ": size", std::to_string(mask.width_px) + "x" + std::to_string(mask.height_px) + " pixels",
-					std::to_string(reference.width_px) + "x" + std::to_string(reference.height_px) + " as " + reference.path);
-	}
+	refuseInputIf(mask.width_px != reference.width_px || mask.height_px != reference.height_px, path + ": size",
+				  std::to_string(mask.width_px) + "x" + std::to_string(mask.height_px) + " pixels",
+				  std::to_string(reference.width_px) + "x" + std::to_string(reference.height_px) + " as " + reference.path);
 	if (std::find(mask.surface.begin(), mask.surface.end(), uint8_t{1}) == mask.surface.end())
 	{
 		throw Error(ExitCode::invalid_input, path + ": depth: found sky alone, expected a surface somewhere");
@@ -161,10 +159,7 @@ double judged(const CompareOptions& options, const Comparison& comparison)
 		return 0.0;
 	}
 	const std::optional<double> error = errorBy(comparison, options.metric);
-	if (!error)
-	{
-		refuseInput(options.test + ": size", "no window of 11x11 pixels that counts", "one for --metric ssim");
-	}
+	refuseInputIf(!error, options.test + ": size", "no window of 11x11 pixels that counts", "one for --metric ssim");
 	return *error;
 }
 

@@ -27,11 +27,8 @@ std::vector<T> arrayBelow(const FbxObjects& objects, const FbxObject& object, co
 std::vector<glm::dvec3> vectorsBelow(const FbxObjects& objects, const FbxObject& object, std::string_view name)
 {
 	const std::vector<double> numbers = arrayBelow<double>(objects, object, *object.node, name);
-	if (numbers.size() % 3 != 0)
-	{
-		objects.file().fail(FbxObjects::placeOf(object) + ": " + std::string(name), std::to_string(numbers.size()) + " numbers",
-							"three for each point");
-	}
+	failIf(numbers.size() % 3 != 0, objects.file(), FbxObjects::placeOf(object) + ": " + std::string(name),
+		   std::to_string(numbers.size()) + " numbers", "three for each point");
 	return listOf(numbers.size() / 3,
 				  [&numbers](std::size_t i) { return glm::dvec3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]); });
 }
@@ -173,10 +170,8 @@ void applyShape(const FbxObjects& objects, const Target& target, std::vector<glm
 	const std::vector<int64_t> indices = arrayBelow<int64_t>(objects, shape, *shape.node, "Indexes");
 	const std::vector<glm::dvec3> moves = vectorsBelow(objects, shape, "Vertices");
 	const std::vector<glm::dvec3> turns = vectorsBelow(objects, shape, "Normals");
-	if (moves.size() != indices.size())
-	{
-		objects.file().fail(FbxObjects::placeOf(shape), std::to_string(moves.size()) + " points", std::to_string(indices.size()));
-	}
+	failIf(moves.size() != indices.size(), objects.file(), FbxObjects::placeOf(shape), std::to_string(moves.size()) + " points",
+		   std::to_string(indices.size()));
 	for (std::size_t i = 0; i < indices.size(); ++i)
 	{
 		const std::size_t point = pointAt(objects, shape, indices[i], points.size());
@@ -222,11 +217,8 @@ std::vector<Bone> bonesOf(const FbxObjects& objects, const FbxObject& geometry, 
 std::optional<glm::dmat4> matrixBelow(const FbxObjects& objects, const FbxObject& cluster, std::string_view name)
 {
 	const std::vector<double> numbers = arrayBelow<double>(objects, cluster, *cluster.node, name);
-	if (numbers.size() != 16 && !numbers.empty())
-	{
-		objects.file().fail(FbxObjects::placeOf(cluster) + ": " + std::string(name), std::to_string(numbers.size()) + " numbers",
-							"16");
-	}
+	failIf(numbers.size() != 16 && !numbers.empty(), objects.file(), FbxObjects::placeOf(cluster) + ": " + std::string(name),
+		   std::to_string(numbers.size()) + " numbers", "16");
 	return numbers.empty() ? std::nullopt : std::optional(glm::make_mat4(numbers.data()));
 }
 
@@ -343,11 +335,8 @@ private:
 		const FbxObject& cluster = *bone.cluster;
 		const std::vector<int64_t> indices = arrayBelow<int64_t>(m_objects, cluster, *cluster.node, "Indexes");
 		const std::vector<double> weights = arrayBelow<double>(m_objects, cluster, *cluster.node, "Weights");
-		if (indices.size() != weights.size())
-		{
-			m_objects.file().fail(FbxObjects::placeOf(cluster) + ": Weights", std::to_string(weights.size()) + " numbers",
-								  std::to_string(indices.size()) + ", one for each of Indexes");
-		}
+		failIf(indices.size() != weights.size(), m_objects.file(), FbxObjects::placeOf(cluster) + ": Weights",
+			   std::to_string(weights.size()) + " numbers", std::to_string(indices.size()) + ", one for each of Indexes");
 		const glm::dmat4 world = worldOfBone(m_objects, bone, m_mesh);
 		const glm::dmat4 mesh_from_world = glm::inverse(m_rest);
 		const DualSum dual(world);

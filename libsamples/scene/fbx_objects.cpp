@@ -112,10 +112,7 @@ public:
 		const auto models = std::count_if(m_parents.begin(), m_parents.end(), [](std::size_t parent) { return parent != 0; });
 		const auto below =
 			std::count_if(m_places.begin(), m_places.end(), [&](const FbxPlace& place) { return m_parents[place.object] != 0; });
-		if (models != below)
-		{
-			m_objects.file().fail("Connections", "a circle of nodes", "a tree");
-		}
+		failIf(models != below, m_objects.file(), "Connections", "a circle of nodes", "a tree");
 		return std::move(m_places);
 	}
 

@@ -298,10 +298,7 @@ private:
 				continue;
 			}
 			const std::optional<std::vector<uint8_t>> plain = bytesOfBase64(open);
-			if (!plain)
-			{
-				m_file.fail(FbxObjects::placeOf(texture) + ": Content", "another text", "base64");
-			}
+			failIf(!plain, m_file, FbxObjects::placeOf(texture) + ": Content", "another text", "base64");
 			bytes.append(plain->begin(), plain->end());
 			open.clear();
 		}
@@ -393,10 +390,8 @@ private:
 			tangent = 0.5 * 25.4 * number("FilmWidth", 0.0) / number("FocalLength", 0.0) / aspect; // inches, millimetres
 		}
 		lens.fov_y_rad = 2.0 * std::atan(tangent);
-		if (!(lens.fov_y_rad > 0.0 && lens.fov_y_rad < kPi))
-		{
-			m_file.fail(FbxObjects::placeOf(camera), "a lens that sees nothing", "an angle between 0 and 180 degrees");
-		}
+		failIf(!(lens.fov_y_rad > 0.0 && lens.fov_y_rad < kPi), m_file, FbxObjects::placeOf(camera), "a lens that sees nothing",
+			   "an angle between 0 and 180 degrees");
 		return lens;
 	}
 
@@ -448,11 +443,8 @@ private:
 			}
 		}
 		m_triangles += m_mesh.corners.size() - std::min(m_mesh.corners.size(), 2 * m_mesh.ends.size());
-		if (m_triangles > kMaxTriangles)
-		{
-			refuseInput(m_file.path(), "more than " + std::to_string(kMaxTriangles) + " triangles, counting every instance",
-						"at most so many");
-		}
+		refuseInputIf(m_triangles > kMaxTriangles, m_file.path(),
+					  "more than " + std::to_string(kMaxTriangles) + " triangles, counting every instance", "at most so many");
 		pose(instance, geometry);
 		for (const auto& [material, polygons] : groupsOf(instance))
 		{

@@ -520,10 +520,7 @@ FbxFile::FbxFile(std::string path) : m_path(std::move(path)), m_bytes(readFile(m
 	const FbxNode* const header = m_root.child("FBXHeaderExtension");
 	const FbxNode* const version = header == nullptr ? nullptr : header->child("FBXVersion");
 	const std::optional<int64_t> number = version == nullptr ? std::nullopt : wholeAt(*version, 0);
-	if (!number)
-	{
-		fail("FBXHeaderExtension.FBXVersion", "nothing", "a version, as FBX files have");
-	}
+	failIf(!number, *this, "FBXHeaderExtension.FBXVersion", "nothing", "a version, as FBX files have");
 	checkVersion(m_path, *number);
 }
 
@@ -587,10 +584,8 @@ void FbxFile::decode(const FbxValue& value, const std::string& where, const char
 		const std::size_t size = BinaryParser::sizeOf(value.type);
 		const std::string plain = value.compressed ? inflated(value, value.count * size) : std::string();
 		const std::string_view bytes = value.compressed ? std::string_view(plain) : value.bytes;
-		if (bytes.size() != value.count * size)
-		{
-			fail(where, "an array that zlib cannot unpack", std::to_string(value.count) + " numbers");
-		}
+		failIf(bytes.size() != value.count * size, *this, where, "an array that zlib cannot unpack",
+			   std::to_string(value.count) + " numbers");
 		into.reserve(value.count);
 		for (const char* at = bytes.data(); at != bytes.data() + bytes.size(); at += size)
 		{
@@ -604,10 +599,7 @@ void FbxFile::decode(const FbxValue& value, const std::string& where, const char
 			}
 		}
 	}
-	if (into.size() != value.count)
-	{
-		fail(where, std::to_string(into.size()) + " numbers", std::to_string(value.count));
-	}
+	failIf(into.size() != value.count, *this, where, std::to_string(into.size()) + " numbers", std::to_string(value.count));
 }
 
 template <class T> std::vector<T> FbxFile::arrayOf(const FbxNode& node, const std::string& where) const

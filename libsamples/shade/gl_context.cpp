@@ -20,8 +20,12 @@ namespace nook
 namespace
 {
 
-[[noreturn]] void refuse(const std::string& what)
+void requireEgl(bool works, const std::string& what)
 {
+	if (works)
+	{
+		return;
+	}
 	std::array<char, 16> code{};
 	std::snprintf(code.data(), code.size(), "0x%04X", static_cast<unsigned>(eglGetError()));
 	throw Error(ExitCode::unsupported,
@@ -55,10 +59,7 @@ EGLDisplay anyDisplay()
 	{
 		return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
 	}
-	if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base"))
-	{
-		refuse("found no EGL without a display");
-	}
+	requireEgl(epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base"), "found no EGL without a display");
 	return eglGetDisplay(EGL_DEFAULT_DISPLAY);
 }
 
@@ -81,15 +82,11 @@ std::optional<std::vector<EGLDeviceEXT>> listedDevices()
 EGLDisplay displayOf(int device)
 {
 	const std::optional<std::vector<EGLDeviceEXT>> devices = listedDevices();
-	if (!devices)
-	{
-		refuse("found no list of devices");
-	}
-	if (device < 0 || static_cast<std::size_t>(device) >= devices->size())
-	{
-		throw Error(ExitCode::unsupported, "OpenGL: found no device " + std::to_string(device) + ", expected one of the " +
-											   std::to_string(devices->size()) + " that EGL lists, from 0");
-	}
+	requireEgl(devices.has_value(), "found no list of devices");
+	refuseIf(device < 0 || static_cast<std::size_t>(device) >= devices->size(),
+			 "OpenGL: found no device " + std::to_string(device) + ", expected one of the " + std::to_string(devices->size()) +
+				 " that EGL lists, from 0",
+			 ExitCode::unsupported);
 	return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, (*devices)[static_cast<std::size_t>(device)], nullptr);
 }
 
@@ -187,14 +184,9 @@ GlContext::GlContext(GlApi api, std::optional<int> device)
 {
 	requireLibraries(api);
 	m_display = device ? displayOf(*device) : chosenDisplay();
-	if (m_display == EGL_NO_DISPLAY || eglInitialize(m_display, nullptr, nullptr) == EGL_FALSE)
-	{
-		refuse("found no display");
-	}
-	if (eglBindAPI(api == GlApi::core ? EGL_OPENGL_API : EGL_OPENGL_ES_API) == EGL_FALSE)
-	{
-		refuse(api == GlApi::core ? "found no desktop OpenGL" : "found no OpenGL ES");
-	}
+	requireEgl(m_display != EGL_NO_DISPLAY && eglInitialize(m_display, nullptr, nullptr) != EGL_FALSE, "found no display");
+	requireEgl(eglBindAPI(api == GlApi::core ? EGL_OPENGL_API : EGL_OPENGL_ES_API) != EGL_FALSE,
+			   api == GlApi::core ? "found no desktop OpenGL" : "found no OpenGL ES");
 	// Mesa gives its newest version whatever is asked for; NVIDIA gives the version asked for, without compute shaders in 3.3.
 	for (const auto& [major, minor] : api == GlApi::core ? std::vector<std::pair<EGLint, EGLint>>{{4, 5}, {4, 3}, {3, 3}}
 														 : std::vector<std::pair<EGLint, EGLint>>{{3, 0}})
@@ -212,15 +204,9 @@ GlContext::GlContext(GlApi api, std::optional<int> device)
 			break;
 		}
 	}
-	if (m_context == EGL_NO_CONTEXT)
-	{
-		refuse("found no context");
-	}
+	requireEgl(m_context != EGL_NO_CONTEXT, "found no context");
 	use();
-	if (api == GlApi::es && !epoxy_has_gl_extension("GL_EXT_color_buffer_float"))
-	{
-		refuse("found no pictures of floats");
-	}
+	requireEgl(api == GlApi::core || epoxy_has_gl_extension("GL_EXT_color_buffer_float"), "found no pictures of floats");
 }
 
 GlContext::~GlContext()
@@ -231,10 +217,7 @@ GlContext::~GlContext()
 
 void GlContext::use() const
 {
-	if (eglMakeCurrent(m_display, EGL_NO_SURFACE, EGL_NO_SURFACE, m_context) == EGL_FALSE)
-	{
-		refuse("found no context");
-	}
+	requireEgl(eglMakeCurrent(m_display, EGL_NO_SURFACE, EGL_NO_SURFACE, m_context) != EGL_FALSE, "found no context");
 }
 
 std::string GlContext::renderer() const
@@ -434,20 +417,14 @@ GlName linkedProgram(const std::vector<unsigned>& shaders)
 	}
 	int good = 0;
 	glGetProgramiv(program, GL_LINK_STATUS, &good);
-	if (good == 0)
-	{
-		throw Error(ExitCode::runtime, "OpenGL: found a program that does not link, expected one that links");
-	}
+	refuseIf(good == 0, "OpenGL: found a program that does not link, expected one that links", ExitCode::runtime);
 	return program;
 }
 
 void checkGlErrors()
 {
 	const unsigned code = glGetError();
-	if (code != GL_NO_ERROR)
-	{
-		throw Error(ExitCode::runtime, "OpenGL: found error " + std::to_string(code) + ", expected none");
-	}
+	refuseIf(code != GL_NO_ERROR, "OpenGL: found error " + std::to_string(code) + ", expected none", ExitCode::runtime);
 }
 
 double secondsOf(const std::function<void()>& commands, bool timer)

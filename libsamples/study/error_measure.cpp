@@ -347,10 +347,8 @@ private:
 		ProgressCounter progress(m_run.progress, level.name + " " + camera.name, m_grid.size());
 		std::vector<std::string> failed;
 		const std::vector<Candidate> drawn = addPoints(on, bench, view, progress, failed);
-		if (drawn.empty() && !isShare(m_split))
-		{
-			throw Error(ExitCode::runtime, failed.empty() ? "every candidate was stopped" : failed.front());
-		}
+		refuseIf(drawn.empty() && !isShare(m_split), failed.empty() ? "every candidate was stopped" : failed.front(),
+				 ExitCode::runtime);
 		setFront(view); // in a part: of its own points, among which is all that is on the front of all
 		shareFlicker(on, bench, drawn, view);
 		addLimit(on, view);

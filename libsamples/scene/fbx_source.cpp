@@ -33,7 +33,7 @@ FileAxes axesOf(const FbxObjects& objects)
 	FileAxes axes;
 	axes.unit_m = 0.01;
 	FbxObject settings;
-	if (const FbxNode* const node = objects.file().root().child("GlobalSettings"))
+	if (const FbxNode* const node = objects.file.root.child("GlobalSettings"))
 	{
 		settings.own = propertiesOf(*node);
 	}
@@ -67,7 +67,7 @@ class FbxSender
 {
 public:
 	FbxSender(const FbxObjects& objects, const LoadSettings& settings, ValueWriter& to)
-		: m_objects(objects), m_file(objects.file()), m_settings(settings),
+		: m_objects(objects), m_file(objects.file), m_settings(settings),
 		  m_world_from_file(worldFromFile(settings, axesOf(objects))), m_to(to), m_places(placesOf(objects)),
 		  m_worlds(objects.count(), nullptr), m_uses(objects.count(), 0)
 	{
@@ -286,7 +286,7 @@ private:
 		for (std::size_t i = 0; i < content.values.size(); ++i)
 		{
 			std::string part = m_file.text(content, i);
-			if (!m_file.isText())
+			if (!m_file.is_text)
 			{
 				bytes += part;
 				continue;
@@ -409,7 +409,7 @@ private:
 		}
 		if (corners > 3 * uint64_t{kMaxTriangles})
 		{
-			refuseInput(m_file.path(), std::to_string(corners) + " corners of polygons, counting every instance",
+			refuseInput(m_file.path, std::to_string(corners) + " corners of polygons, counting every instance",
 						"at most " + std::to_string(3 * kMaxTriangles));
 		}
 	}
@@ -443,7 +443,7 @@ private:
 			}
 		}
 		m_triangles += m_mesh.corners.size() - std::min(m_mesh.corners.size(), 2 * m_mesh.ends.size());
-		refuseInputIf(m_triangles > kMaxTriangles, m_file.path(),
+		refuseInputIf(m_triangles > kMaxTriangles, m_file.path,
 					  "more than " + std::to_string(kMaxTriangles) + " triangles, counting every instance", "at most so many");
 		pose(instance, geometry);
 		for (const auto& [material, polygons] : groupsOf(instance))

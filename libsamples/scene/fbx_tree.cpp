@@ -505,28 +505,28 @@ std::optional<int64_t> wholeAt(const FbxNode& node, std::size_t index)
 	return number ? wholeFrom(*number) : std::nullopt;
 }
 
-FbxFile::FbxFile(std::string path) : m_path(std::move(path)), m_bytes(readFile(m_path))
+FbxFile::FbxFile(std::string of) : path(std::move(of)), m_bytes(readFile(path))
 {
 	if (m_bytes.starts_with(kMagic))
 	{
 		m_big_endian = m_bytes.size() > kMagic.size() && m_bytes[kMagic.size()] != 0;
-		m_root.children = BinaryParser(m_path, m_bytes, m_big_endian).run();
+		root.children = BinaryParser(path, m_bytes, m_big_endian).run();
 		return;
 	}
-	m_is_text = true;
+	is_text = true;
 	constexpr std::string_view kMark = "\xEF\xBB\xBF";
 	const std::string_view text = m_bytes;
-	m_root.children = TextParser(m_path, text.substr(text.starts_with(kMark) ? kMark.size() : 0)).run();
-	const FbxNode* const header = m_root.child("FBXHeaderExtension");
+	root.children = TextParser(path, text.substr(text.starts_with(kMark) ? kMark.size() : 0)).run();
+	const FbxNode* const header = root.child("FBXHeaderExtension");
 	const FbxNode* const version = header == nullptr ? nullptr : header->child("FBXVersion");
 	const std::optional<int64_t> number = version == nullptr ? std::nullopt : wholeAt(*version, 0);
 	failIf(!number, *this, "FBXHeaderExtension.FBXVersion", "nothing", "a version, as FBX files have");
-	checkVersion(m_path, *number);
+	checkVersion(path, *number);
 }
 
 void FbxFile::fail(const std::string& where, const std::string& found, const std::string& expected) const
 {
-	refuseInput(m_path + ": " + where, found, expected);
+	refuseInput(path + ": " + where, found, expected);
 }
 
 std::string FbxFile::text(const FbxNode& node, std::size_t index) const
@@ -536,7 +536,7 @@ std::string FbxFile::text(const FbxNode& node, std::size_t index) const
 		return "";
 	}
 	const std::string_view bytes = node.values[index].bytes;
-	return m_is_text && bytes.find('&') != std::string_view::npos ? unescapedText(bytes) : std::string(bytes);
+	return is_text && bytes.find('&') != std::string_view::npos ? unescapedText(bytes) : std::string(bytes);
 }
 
 std::string FbxFile::textBelow(const FbxNode& parent, std::string_view name) const

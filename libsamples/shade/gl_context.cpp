@@ -252,34 +252,34 @@ GlTexture::GlTexture(int width, int height, int channels, const float* values)
 	checkGlErrors();
 }
 
-GlTexture::GlTexture(const PictureShape& shape)
-	: m_shape(shape), m_target(shape.format == PictureFormat::counts ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D),
-	  m_name(glGenTextures, glDeleteTextures)
+GlTexture::GlTexture(const PictureShape& of)
+	: shape(of), target(shape.format == PictureFormat::counts ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D),
+	  name(glGenTextures, glDeleteTextures)
 {
-	glBindTexture(m_target, m_name);
-	glTexParameteri(m_target, GL_TEXTURE_MIN_FILTER, shape.levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST);
-	glTexParameteri(m_target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-	glTexParameteri(m_target, GL_TEXTURE_MAX_LEVEL, shape.levels - 1);
+	glBindTexture(target, name);
+	glTexParameteri(target, GL_TEXTURE_MIN_FILTER, shape.levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST);
+	glTexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+	glTexParameteri(target, GL_TEXTURE_MAX_LEVEL, shape.levels - 1);
 	const GlFormat format = formatOf(shape.format);
 	for (int level = 0; level < shape.levels; ++level)
 	{
 		const int width = levelSide(shape.width, level);
 		const int height = levelSide(shape.height, level);
-		if (m_target == GL_TEXTURE_2D)
+		if (target == GL_TEXTURE_2D)
 		{
-			glTexImage2D(m_target, level, format.stored, width, height, 0, format.channels, format.type, nullptr);
+			glTexImage2D(target, level, format.stored, width, height, 0, format.channels, format.type, nullptr);
 		}
 		else
 		{
-			glTexImage3D(m_target, level, format.stored, width, height, shape.layers, 0, format.channels, format.type, nullptr);
+			glTexImage3D(target, level, format.stored, width, height, shape.layers, 0, format.channels, format.type, nullptr);
 		}
 	}
 	checkGlErrors();
 }
 
-GlLeft::GlLeft(int width, int height) : m_name(glGenRenderbuffers, glDeleteRenderbuffers)
+GlLeft::GlLeft(int width, int height) : name(glGenRenderbuffers, glDeleteRenderbuffers)
 {
-	glBindRenderbuffer(GL_RENDERBUFFER, m_name);
+	glBindRenderbuffer(GL_RENDERBUFFER, name);
 	glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT16, width, height);
 	checkGlErrors();
 }
@@ -322,15 +322,15 @@ double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 {
 	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
 	glBindFramebuffer(GL_FRAMEBUFFER, frame);
-	if (target.target() == GL_TEXTURE_2D)
+	if (target.target == GL_TEXTURE_2D)
 	{
-		glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.name(), level);
+		glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.name, level);
 	}
 	else
 	{
-		glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, target.name(), level, layer);
+		glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, target.name, level, layer);
 	}
-	glViewport(0, 0, levelSide(target.shape().width, level), levelSide(target.shape().height, level));
+	glViewport(0, 0, levelSide(target.shape.width, level), levelSide(target.shape.height, level));
 	glBindVertexArray(m_vertices);
 	glUseProgram(m_program);
 	glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
@@ -338,19 +338,19 @@ double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 	{
 		const GlTexture& texture = *m_units[i].texture;
 		glActiveTexture(GL_TEXTURE0 + static_cast<unsigned>(i));
-		glBindTexture(texture.target(), texture.name());
-		if (texture.shape().levels > 1)
+		glBindTexture(texture.target, texture.name);
+		if (texture.shape.levels > 1)
 		{
 			// A render target must not be readable: otherwise a level that reads the one above would be undefined.
 			const bool own = &texture == &target;
-			glTexParameteri(texture.target(), GL_TEXTURE_MAX_LEVEL, own ? std::max(level - 1, 0) : texture.shape().levels - 1);
+			glTexParameteri(texture.target, GL_TEXTURE_MAX_LEVEL, own ? std::max(level - 1, 0) : texture.shape.levels - 1);
 		}
 		glUniform1i(m_units[i].location, static_cast<int>(i));
 	}
 	if (m_left != nullptr)
 	{
 		// Draws at the middle of the depth range: drawn pixels pass against the far end, discarded ones do not.
-		glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, m_left->name());
+		glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, m_left->name);
 		glEnable(GL_DEPTH_TEST);
 		glDepthMask(m_fills ? GL_FALSE : GL_TRUE);
 		glDepthFunc(m_fills ? GL_LESS : GL_ALWAYS);
@@ -370,12 +370,12 @@ double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 
 std::vector<float> readFloats(const GlTexture& texture)
 {
-	const PictureShape& shape = texture.shape();
+	const PictureShape& shape = texture.shape;
 	const auto channels = static_cast<std::size_t>(channelsOf(shape.format));
 	std::vector<float> values(channels * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
 	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
 	glBindFramebuffer(GL_FRAMEBUFFER, frame);
-	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
+	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name, 0);
 	glPixelStorei(GL_PACK_ALIGNMENT, 4);
 	glReadPixels(0, 0, shape.width, shape.height, formatOf(shape.format).channels, GL_FLOAT, values.data());
 	checkGlErrors();
@@ -474,11 +474,11 @@ double GlScan::run(const GlTexture& source, const GlTexture& target, int layer, 
 {
 	glUseProgram(m_program);
 	glActiveTexture(GL_TEXTURE0);
-	glBindTexture(source.target(), source.name());
+	glBindTexture(source.target, source.name);
 	glUniform1i(glGetUniformLocation(m_program, "nook_source"), 0);
 	glUniform1i(glGetUniformLocation(m_program, "nook_target"), 0);
-	glBindImageTexture(0, target.name(), 0, GL_FALSE, layer, GL_WRITE_ONLY, GL_RGBA32UI);
-	const PictureShape& shape = target.shape();
+	glBindImageTexture(0, target.name, 0, GL_FALSE, layer, GL_WRITE_ONLY, GL_RGBA32UI);
+	const PictureShape& shape = target.shape;
 	const auto lines = static_cast<unsigned>(m_axis == 0 ? shape.height : shape.width);
 	return secondsOf(
 		[lines]

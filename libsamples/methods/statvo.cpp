@@ -60,15 +60,9 @@ public:
 	}
 
 private:
-	ShadePass& addPass(ShadeKernel kernel, std::vector<ShadeRead> reads, std::size_t picture)
+	ShadePass& addPass(const ShadeKernel& kernel, const std::vector<ShadeRead>& reads, std::size_t picture)
 	{
-		ShadePass pass;
-		pass.kernel = std::move(kernel);
-		pass.reads = std::move(reads);
-		pass.picture = picture;
-		pass.block = m_block;
-		m_plan.passes.push_back(pass);
-		return m_plan.passes.back();
+		return m_plan.addPass(kernel, reads, picture, m_block);
 	}
 
 	std::size_t addRange()

@@ -290,10 +290,8 @@ void addValues(Values& values, const JsonValue& holder)
 	object.requireObject();
 	for (const auto& item : object.value->items())
 	{
-		if (item.key() == "level" || item.key() == "name" || item.key() == "here")
-		{
-			object.at(item.key()).fail("a value of that name", "another: {" + item.key() + "} has a meaning of its own");
-		}
+		failIf(item.key() == "level" || item.key() == "name" || item.key() == "here", object.at(item.key()), "a value of that name",
+			   "another: {" + item.key() + "} has a meaning of its own");
 		values[item.key()] = object.at(item.key()).string();
 	}
 }
@@ -347,10 +345,8 @@ std::vector<std::string> stepsOf(const JsonValue& level, const std::vector<std::
 	const std::vector<std::string> names = level.texts("steps");
 	for (std::size_t i = 0; i < names.size(); ++i)
 	{
-		if (std::find(all.begin(), all.end(), names[i]) == all.end())
-		{
-			level.at("steps").at(i).fail("'" + names[i] + "'", "the name of a step");
-		}
+		failIf(std::find(all.begin(), all.end(), names[i]) == all.end(), level.at("steps").at(i), "'" + names[i] + "'",
+			   "the name of a step");
 	}
 	return names;
 }
@@ -469,10 +465,7 @@ Plan readPlan(const std::string& text, const std::string& path)
 {
 	const nlohmann::json json = parseJson(text, path);
 	const JsonValue root{&json, &path, ""};
-	if (root.at("schema").string() != "nook.plan/2")
-	{
-		root.at("schema").expected("nook.plan/2");
-	}
+	root.at("schema").require(root.at("schema").string() == "nook.plan/2", "nook.plan/2");
 	Plan plan;
 	plan.version = root.at("version").string();
 	plan.title = root.at("title").string();
@@ -595,10 +588,7 @@ std::vector<ListedCommand> readLevelList(const std::string& text, const std::str
 	const nlohmann::json json = parseJson(text, path);
 	const JsonValue root{&json, &path, ""};
 	root.allowOnly({"schema", "values", "steps", "levels"});
-	if (root.at("schema").string() != "nook.levels/1")
-	{
-		root.at("schema").expected("nook.levels/1");
-	}
+	root.at("schema").require(root.at("schema").string() == "nook.levels/1", "nook.levels/1");
 	const JsonValue steps = root.at("steps");
 	const JsonValue levels = root.at("levels");
 	const std::vector<std::string> all = steps.elements([](const JsonValue& step) { return step.at("name").string(); });

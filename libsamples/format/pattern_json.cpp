@@ -52,22 +52,15 @@ Recipe readRecipe(const JsonValue& object, const Pattern& pattern)
 	recipe.method = enumOf<Method>(object.at("method"));
 	recipe.minimise = enumOf<Minimise>(object.at("minimise"));
 	recipe.weights = enumOf<WeightRule>(object.at("weights"));
-	if (object.at("voronoi").string() != "exact")
-	{
-		object.at("voronoi").expected("\"exact\""); // earlier versions also had cells of a grid
-	}
+	// Earlier versions also had cells of a grid.
+	object.at("voronoi").require(object.at("voronoi").string() == "exact", "\"exact\"");
 	recipe.order = enumOf<Order>(object.at("order"));
 	recipe.starts = static_cast<int>(object.at("starts").integer(0, 100000));
 	recipe.seed = static_cast<uint32_t>(object.at("seed").integer(0, UINT32_MAX));
 	recipe.exponent = object.at("exponent").number();
-	if (recipe.domain != pattern.domain)
-	{
-		object.at("domain").expected(jsonText(nameOf(pattern.domain)) + " as in the pattern");
-	}
-	if (static_cast<std::size_t>(recipe.count) != pattern.count())
-	{
-		object.at("count").expected(std::to_string(pattern.count()) + " as in the pattern");
-	}
+	object.at("domain").require(recipe.domain == pattern.domain, jsonText(nameOf(pattern.domain)) + " as in the pattern");
+	object.at("count").require(static_cast<std::size_t>(recipe.count) == pattern.count(),
+							   std::to_string(pattern.count()) + " as in the pattern");
 	try
 	{
 		checkRecipe(recipe);
@@ -336,17 +329,12 @@ PatternFile parsePatternJson(const std::string& text, const std::string& path)
 					"points", "weights", "powers"});
 	PatternFile file;
 	const Domain domain = enumOf<Domain>(root.at("domain"));
-	if (domain == Domain::slice)
-	{
-		root.at("domain").expected("that of a pattern; slices come in tiles");
-	}
+	root.at("domain").require(domain != Domain::slice, "that of a pattern; slices come in tiles");
 	if (ours || root.has("count"))
 	{
 		const auto count = static_cast<std::size_t>(root.at("count").integer(1, kMaxCount));
-		if (root.at("points").arraySize() != count)
-		{
-			root.at("points").expected("an array of " + std::to_string(count) + ", as count says");
-		}
+		root.at("points").require(root.at("points").arraySize() == count,
+								  "an array of " + std::to_string(count) + ", as count says");
 	}
 	file.weights_given = ours || root.has("weights");
 	file.pattern = readSamples(root, domain, file.weights_given);
@@ -458,10 +446,7 @@ std::string samplesJson(const Pattern& pattern, const std::string& indent)
 void requireSchema(const JsonValue& root, const char* schema)
 {
 	root.requireObject();
-	if (root.at("schema").string() != schema)
-	{
-		root.at("schema").expected(jsonText(schema));
-	}
+	root.at("schema").require(root.at("schema").string() == schema, jsonText(schema));
 }
 
 void readHead(const JsonValue& root, std::string& command, std::string& version)

@@ -62,10 +62,7 @@ TileRecipe readRecipe(const JsonValue& object, const PatternTile& tile)
 	{
 		object.at("frames").expected(std::to_string(tile.frames) + " as in the tile, and moves as there");
 	}
-	if (recipe.size != tile.size)
-	{
-		object.at("size").expected(std::to_string(tile.size) + " as in the tile");
-	}
+	object.at("size").require(recipe.size == tile.size, std::to_string(tile.size) + " as in the tile");
 	try
 	{
 		checkTileRecipe(recipe, tile.domain);
@@ -154,10 +151,8 @@ void readVariants(const JsonValue& root, std::size_t count, PatternTile& tile)
 		const JsonValue variant = variants.at(i);
 		variant.allowOnly({"points", "weights", "powers"});
 		tile.variants.push_back(readSamples(variant, tile.domain, true));
-		if (tile.variants.back().count() != count)
-		{
-			variant.at("points").expected("an array of " + std::to_string(count) + ", as count says");
-		}
+		variant.at("points").require(tile.variants.back().count() == count,
+									 "an array of " + std::to_string(count) + ", as count says");
 	}
 	if (!root.has("transforms"))
 	{
@@ -314,10 +309,7 @@ TileFilter readFilterFields(const JsonValue& object)
 	std::vector<double> numbers = listOf(count, [&taps](std::size_t i) { return taps.at(i).number(); });
 	checkedSum(taps, numbers);
 	TileFilter filter{object.at("name").string(), object.at("share").number(), static_cast<int>(width), std::move(numbers)};
-	if (!(filter.share > 0.0 && filter.share <= 1e6))
-	{
-		object.at("share").expected("a number above 0, at most 1e6");
-	}
+	object.at("share").require(filter.share > 0.0 && filter.share <= 1e6, "a number above 0, at most 1e6");
 	return filter;
 }
 

@@ -153,10 +153,7 @@ std::vector<MethodRecipe> recipesOf(const std::string& text, const std::string& 
 	const nlohmann::json document = parseJson(text, path);
 	const JsonValue root{&document, &path, {}};
 	root.allowOnly({"format", "nook_version", "command", "fit", "recipes"});
-	if (root.at("format").string() != kRecipesFormat)
-	{
-		root.at("format").expected("'" + std::string(kRecipesFormat) + "'");
-	}
+	root.at("format").require(root.at("format").string() == kRecipesFormat, "'" + std::string(kRecipesFormat) + "'");
 	std::vector<MethodRecipe> recipes;
 	for (const JsonValue& one : root.objects("recipes"))
 	{

@@ -247,17 +247,20 @@ public:
 		return nodes(0);
 	}
 
-private:
 	[[noreturn]] void fail(const std::string& found, const std::string& expected) const
 	{
 		const auto line = 1 + std::count(m_text.begin(), m_text.begin() + static_cast<std::ptrdiff_t>(m_at), '\n');
 		refuseInput(m_path + ": line " + std::to_string(line), found, expected);
 	}
 
-	[[noreturn]] void failHere(const std::string& expected) const
+private:
+	void failHereIf(bool condition, const char* expected) const
 	{
-		fail(m_at >= m_text.size() ? "the file's end" : quoted(m_text.substr(m_at, m_text.find_first_of(kSpaces, m_at) - m_at)),
-			 expected);
+		if (condition)
+		{
+			fail(m_at >= m_text.size() ? "the file's end" : quoted(m_text.substr(m_at, m_text.find_first_of(kSpaces, m_at) - m_at)),
+				 expected);
+		}
 	}
 
 	// The next character that is neither blank nor comment; 0 at the end.
@@ -277,12 +280,9 @@ private:
 		return 0;
 	}
 
-	void need(char c, const std::string& expected)
+	void need(char c, const char* expected)
 	{
-		if (next() != c)
-		{
-			failHere(expected);
-		}
+		failHereIf(next() != c, expected);
 		m_at += 1;
 	}
 
@@ -304,10 +304,7 @@ private:
 		{
 			FbxNode& node = list.emplace_back();
 			node.name = word();
-			if (node.name.empty() || next() != ':')
-			{
-				failHere("the name of a node and a colon");
-			}
+			failHereIf(node.name.empty() || next() != ':', "the name of a node and a colon");
 			m_at += 1;
 			values(node);
 			if (next() == '{')
@@ -317,10 +314,7 @@ private:
 				need('}', "}");
 			}
 		}
-		if (depth == 0 && m_at < m_text.size())
-		{
-			failHere("the name of a node");
-		}
+		failHereIf(depth == 0 && m_at < m_text.size(), "the name of a node");
 		return list;
 	}
 
@@ -355,29 +349,20 @@ private:
 				if (text.empty() || next() == ':')
 				{
 					m_at = start; // the next node's name
-					if (text.empty() || expected)
-					{
-						failHere("a value");
-					}
+					failHereIf(text.empty() || expected, "a value");
 					return;
 				}
 				node.values.push_back(scalar(text));
 			}
 			expected = false;
 		}
-		if (expected)
-		{
-			failHere("a value");
-		}
+		failHereIf(expected, "a value");
 	}
 
 	FbxValue string()
 	{
 		const std::size_t end = m_text.find('"', m_at + 1);
-		if (end == std::string_view::npos)
-		{
-			fail("a text without an end", "\"");
-		}
+		failIf(end == std::string_view::npos, *this, "a text without an end", "\"");
 		FbxValue value;
 		value.kind = FbxValue::Kind::text;
 		value.bytes = m_text.substr(m_at + 1, end - m_at - 1);
@@ -408,27 +393,18 @@ private:
 	{
 		m_at += 1;
 		const FbxValue count = scalar(word());
-		if (count.kind != FbxValue::Kind::whole || count.whole < 0)
-		{
-			failHere("an array's length");
-		}
+		failHereIf(count.kind != FbxValue::Kind::whole || count.whole < 0, "an array's length");
 		FbxValue value;
 		value.kind = FbxValue::Kind::array;
 		value.count = static_cast<uint64_t>(count.whole);
 		need('{', "{ of an array");
 		if (next() != '}')
 		{
-			if (word() != "a")
-			{
-				failHere("a: of an array");
-			}
+			failHereIf(word() != "a", "a: of an array");
 			need(':', "a: of an array");
 		}
 		const std::size_t end = m_text.find('}', m_at);
-		if (end == std::string_view::npos)
-		{
-			fail("an array without an end", "}");
-		}
+		failIf(end == std::string_view::npos, *this, "an array without an end", "}");
 		value.bytes = m_text.substr(m_at, end - m_at);
 		m_at = end + 1;
 		return value;
@@ -609,10 +585,8 @@ template <class T> std::vector<T> FbxFile::arrayOf(const FbxNode& node, const st
 	std::vector<double> numbers;
 	for (const FbxValue& value : node.values)
 	{
-		if (node.values.size() > 1 && value.kind == FbxValue::Kind::array)
-		{
-			fail(where, "an array among other values", "one array");
-		}
+		failIf(node.values.size() > 1 && value.kind == FbxValue::Kind::array, *this, where, "an array among other values",
+			   "one array");
 		decode(value, where, what, numbers);
 	}
 	if constexpr (!kWhole)

@@ -489,10 +489,8 @@ std::optional<std::string> dataOf(const std::string& uri, const JsonValue& item)
 		return std::nullopt;
 	}
 	const std::size_t comma = uri.find(',');
-	if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
-	{
-		item.fail("uri", "data that is not base64", "\"data:...;base64,...\"");
-	}
+	failIf(comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64"), item, "uri",
+		   "data that is not base64", "\"data:...;base64,...\"");
 	std::string text = uri.substr(comma + 1);
 	text.append((4 - text.size() % 4) % 4, '='); // some writers omit the padding
 	const std::optional<std::vector<uint8_t>> bytes = bytesOfBase64(text);

@@ -445,10 +445,7 @@ public:
 		{
 			place.fail(std::to_string(m_corners.size()) + " corners of a facet", "3");
 		}
-		if (m_meshes.empty())
-		{
-			place.fail("a facet", "\"solid\" before it");
-		}
+		failIf(m_meshes.empty(), place, "a facet", "\"solid\" before it");
 		addFacet(m_meshes.back(), m_normal, m_corners);
 		m_corners.clear();
 		m_open = false;

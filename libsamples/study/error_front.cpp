@@ -3,7 +3,6 @@
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/lists.h"
-#include "study/error_points.h"
 #include "study/error_report.h"
 #include "study/front.h"
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measures a report's levels, one after the other; what a cache has is not measured again.
-#include "study/error_points.h"
 #include "study/error_report.h"
 #include "study/measure_view.h"
 

@@ -75,11 +75,7 @@ template <class Value> std::vector<Value> spread(const BakeInput& input, const s
 GltfBake bakeOf(const BakeOptions& options)
 {
 	const BakeSettings& settings = options.settings;
-	GltfBake bake;
-	bake.target = options.target;
-	bake.attribute = options.attribute;
-	bake.instances = options.instances;
-	bake.color = options.color;
+	GltfBake bake = options.form;
 	bake.in_red = options.to.ends_with(":orm");
 	bake.others_stay = !options.level.load.ignore.empty() || !options.receivers.empty();
 	bake.kind = options.volumes.empty() ? BakedKind::visibility

@@ -182,6 +182,24 @@ Facts headFacts(const CompareOptions& options, const Picture& test, const Pictur
 	return facts;
 }
 
+void addVerdict(Facts& facts, const CompareOptions& options, double found)
+{
+	if (options.max_error)
+	{
+		facts.number("found", found);
+		facts.number("allowed", *options.max_error);
+		facts.text("verdict", found > *options.max_error ? "exceeded" : "within");
+	}
+}
+
+void refuseWorse(const CompareOptions& options, const std::string& what, double found, const std::string& unit = "")
+{
+	refuseIf(options.max_error && found > *options.max_error,
+			 options.test + ": " + what + ": found " + doubleText(found) + unit + ", expected at most " +
+				 doubleText(options.max_error.value_or(0.0)),
+			 ExitCode::difference);
+}
+
 std::string summaryOf(const CompareOptions& options, const VisibilityImage& test, const VisibilityImage& reference,
 					  const Comparison& c, const std::optional<double>& uncertainty, double found)
 {
@@ -207,10 +225,8 @@ std::string summaryOf(const CompareOptions& options, const VisibilityImage& test
 	if (options.max_error)
 	{
 		facts.text("metric", nameOf(options.metric));
-		facts.number("found", found);
-		facts.number("allowed", *options.max_error);
-		facts.text("verdict", found > *options.max_error ? "exceeded" : "within");
 	}
+	addVerdict(facts, options, found);
 	return facts.json();
 }
 
@@ -244,12 +260,7 @@ std::string bentSummary(const CompareOptions& options, const BentImage& test, co
 				   {{"mean", angles.mean_deg}, {"rmse", angles.rmse_deg}, {"p95", angles.p95_deg}, {"max", angles.max_deg}});
 	facts.whole("worst_x", angles.worst_x);
 	facts.whole("worst_y", angles.worst_y);
-	if (options.max_error)
-	{
-		facts.number("found", angles.mean_deg);
-		facts.number("allowed", *options.max_error);
-		facts.text("verdict", angles.mean_deg > *options.max_error ? "exceeded" : "within");
-	}
+	addVerdict(facts, options, angles.mean_deg);
 	return facts.json();
 }
 
@@ -261,11 +272,7 @@ void runBent(const CompareOptions& options)
 	const std::vector<uint8_t> counted = readMask(options.mask, reference);
 	const BentAngles angles = anglesBetween(test, reference, counted);
 	writeOutputs(options.outputs, {}, bentSummary(options, test, reference, angles), {}, bentTable(test, reference, angles));
-	if (options.max_error && angles.mean_deg > *options.max_error)
-	{
-		throw Error(ExitCode::difference, options.test + ": mean angle: found " + doubleText(angles.mean_deg) +
-											  " degrees, expected at most " + doubleText(*options.max_error));
-	}
+	refuseWorse(options, "mean angle", angles.mean_deg, " degrees");
 }
 
 void run(CompareOptions& options, VerbProgress& progress)
@@ -293,11 +300,7 @@ void run(CompareOptions& options, VerbProgress& progress)
 	addSide(files, options.outputs, summaryOf(options, test, reference, comparison, uncertainty, found), {},
 			table(test, reference, comparison, uncertainty, options.settings));
 	files.commit();
-	if (options.max_error && found > *options.max_error)
-	{
-		throw Error(ExitCode::difference, options.test + ": " + std::string(nameOf(options.metric)) + ": found " +
-											  doubleText(found) + ", expected at most " + doubleText(*options.max_error));
-	}
+	refuseWorse(options, std::string(nameOf(options.metric)), found);
 }
 
 } // namespace

@@ -50,11 +50,7 @@ struct GBufferFile
 // For errors: six digits, or the name of a non-finite value.
 std::string shortText(double value)
 {
-	if (!std::isfinite(value))
-	{
-		return std::isnan(value) ? "NaN" : value > 0.0 ? "infinity" : "-infinity";
-	}
-	return roundedText(value, 6);
+	return std::isfinite(value) ? roundedText(value, 6) : std::isnan(value) ? "NaN" : value > 0.0 ? "infinity" : "-infinity";
 }
 
 ImageMatrix imageMatrix(const std::string& key, const glm::dmat4& m, bool wide)
@@ -206,11 +202,8 @@ int depthRank(const Image& image, const std::string& channel)
 {
 	const Name name = partsOf(channel);
 	const bool scalar = name.last == "z" || name.last == "v" || name.last == "y" || name.last == "r";
-	if (name.last == "depth" || (name.before == "depth" && scalar))
-	{
-		return 1;
-	}
-	return name.last == "z" && !vectorOf(image, name.layer) ? 2 : 0;
+	const bool named = name.last == "depth" || (name.before == "depth" && scalar);
+	return named ? 1 : name.last == "z" && !vectorOf(image, name.layer) ? 2 : 0;
 }
 
 // The index of the only channel with that rank; −1: none, −2: several.

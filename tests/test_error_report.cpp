@@ -12,7 +12,6 @@
 #include "core/work_units.h"
 #include "scene/builtin.h"
 #include "shade/gl_context.h"
-#include "study/error_points.h"
 #include "study/error_report.h"
 #include "study/measure_view.h"
 

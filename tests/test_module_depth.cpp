@@ -31,8 +31,8 @@ struct GlStored
 // A texture of another format, into which OpenGL rounds.
 void store(const GlTexture& texture, const GlStored& format, const float* values)
 {
-	glBindTexture(GL_TEXTURE_2D, texture.name());
-	glTexImage2D(GL_TEXTURE_2D, 0, static_cast<int>(format.stored), texture.shape().width, texture.shape().height, 0,
+	glBindTexture(GL_TEXTURE_2D, texture.name);
+	glTexImage2D(GL_TEXTURE_2D, 0, static_cast<int>(format.stored), texture.shape.width, texture.shape.height, 0,
 				 format.channels, GL_FLOAT, values);
 	REQUIRE(glGetError() == GL_NO_ERROR);
 }
@@ -51,8 +51,8 @@ void storeDepth(const GlTexture& texture, int bits, const std::vector<float>& de
 	{
 		steps.push_back(static_cast<std::uint16_t>(static_cast<double>(device) * 65535.0 + 0.5));
 	}
-	glBindTexture(GL_TEXTURE_2D, texture.name());
-	glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT16, texture.shape().width, texture.shape().height, 0, GL_DEPTH_COMPONENT,
+	glBindTexture(GL_TEXTURE_2D, texture.name);
+	glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT16, texture.shape.width, texture.shape.height, 0, GL_DEPTH_COMPONENT,
 				 GL_UNSIGNED_SHORT, steps.data());
 	REQUIRE(glGetError() == GL_NO_ERROR);
 }
@@ -105,7 +105,7 @@ std::vector<glm::vec4> fourOf(const std::vector<glm::vec3>& normals, bool from_z
 
 std::vector<float> drawn(GlPass& pass, const GlTexture& depths, const GlTexture& normals, const nook_block& block)
 {
-	const GlTexture target(depths.shape().width, depths.shape().height, 1, nullptr);
+	const GlTexture target(depths.shape.width, depths.shape.height, 1, nullptr);
 	pass.bind("nook_depths", depths);
 	pass.bind("nook_normals", normals);
 	pass.bindBlock("nook_block", std::as_bytes(std::span(&block, 1)));

@@ -137,7 +137,7 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 		draw(program, *pictures[pass.picture], pass.level, pass.layer);
 	}
 	const GlTexture& last = *pictures[plan.passes.back().picture];
-	return last.shape().format == PictureFormat::quad ? readFloats(last) : readFloats(last);
+	return last.shape.format == PictureFormat::quad ? readFloats(last) : readFloats(last);
 }
 
 } // namespace
@@ -348,10 +348,10 @@ TEST_CASE("module: a compute shader's bindings are where its text puts them", "[
 		const GlTexture normals(gbuffer.width_px, gbuffer.height_px, 4, &four[0].x);
 		const GlTexture picture(PictureShape{PictureFormat::scalar, gbuffer.width_px, gbuffer.height_px});
 		glActiveTexture(GL_TEXTURE1);
-		glBindTexture(GL_TEXTURE_2D, depths.name());
+		glBindTexture(GL_TEXTURE_2D, depths.name);
 		glActiveTexture(GL_TEXTURE2);
-		glBindTexture(GL_TEXTURE_2D, normals.name());
-		glBindImageTexture(0, picture.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+		glBindTexture(GL_TEXTURE_2D, normals.name);
+		glBindImageTexture(0, picture.name, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
 		glDispatchCompute((129 + 7) / 8, (75 + 7) / 8, 1);
 		glMemoryBarrier(GL_ALL_BARRIER_BITS);
 		CAPTURE(static_cast<int>(method), context.renderer());

@@ -19,11 +19,11 @@ namespace
 // Reads a layer of counts.
 std::vector<std::uint32_t> readCounts(const GlTexture& texture, int layer)
 {
-	const PictureShape& shape = texture.shape();
+	const PictureShape& shape = texture.shape;
 	std::vector<std::uint32_t> values(4 * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
 	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
 	glBindFramebuffer(GL_FRAMEBUFFER, frame);
-	glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture.name(), 0, layer);
+	glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture.name, 0, layer);
 	glReadPixels(0, 0, shape.width, shape.height, GL_RGBA_INTEGER, GL_UNSIGNED_INT, values.data());
 	checkGlErrors();
 	return values;

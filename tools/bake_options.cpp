@@ -46,13 +46,11 @@ void takeTarget(BakeOptions& options, const std::string& name, const std::string
 	const bool custom = target == BakeTarget::custom && !rest.empty() && isPlainName(rest);
 	const bool plain =
 		target != BakeTarget::texcoord && target != BakeTarget::custom && (colon == std::string::npos || text == "texture:orm");
-	if (word == kBakeTargets.end() || !(set || custom || plain))
-	{
-		refuseValue(name, text, "visibility, color, color-alpha, texcoord:0 to texcoord:7, custom:NAME, texture or texture:orm");
-	}
+	refuseValueIf(word == kBakeTargets.end() || !(set || custom || plain), name, text,
+				  "visibility, color, color-alpha, texcoord:0 to texcoord:7, custom:NAME, texture or texture:orm");
 	options.to = text;
-	options.target = target;
-	options.attribute = set ? "TEXCOORD_" + rest : custom ? (rest[0] == '_' ? "" : "_") + rest : "";
+	options.form.target = target;
+	options.form.attribute = set ? "TEXCOORD_" + rest : custom ? (rest[0] == '_' ? "" : "_") + rest : "";
 }
 
 // How the volumes are drawn, by their place in the table.
@@ -117,11 +115,12 @@ void declareBake(CLI::App& app, BakeOptions& options)
 		  "Where the file has it: visibility, an attribute (default), color, color-alpha, texcoord:N, custom:NAME, texture, "
 		  "texture:orm",
 		  {.excludes = {{"--probes"}, {"--volumes", "one of them, since a difference has its own attribute"}}}},
-		 {"--instances", takesChoice(kBakeInstances, options.instances),
+		 {"--instances", takesChoice(kBakeInstances, options.form.instances),
 		  "A mesh at several nodes: values for each (default), shared: their mean, attribute: their mean and factors",
 		  ofVertices({{"--bent", "separate, since bent normals are of one place"},
 					  {"--max-error", "none, since each place is split by itself"}})},
-		 {"--color", takesFlag(options.color), "Visibility as COLOR_0, too, which viewers multiply their colours by", ofVertices()},
+		 {"--color", takesFlag(options.form.color), "Visibility as COLOR_0, too, which viewers multiply their colours by",
+		  ofVertices()},
 		 {"--sides", takesChoice(kBakeSides, settings.sides),
 		  "Materials with two sides: a value for each of them (default), or the mean of both", ofVertices()},
 		 {"--bent", takesFlag(settings.bent), "Bent normals as well, the mean directions of what is open: _BENT_NORMAL",
@@ -178,54 +177,40 @@ void declareBake(CLI::App& app, BakeOptions& options)
 void settleBake(BakeOptions& options)
 {
 	BakeSettings& settings = options.settings;
-	if (options.target != BakeTarget::texture && options.texture_px > 0 && isGiven(*options.app, "--to"))
-	{
-		refuse("--to: found '" + options.to + "' with --texture, expected --to texture");
-	}
-	if (options.target == BakeTarget::texture && (isGiven(*options.app, "--max-error") || options.automatic))
-	{
-		refuse((options.automatic ? "--auto" : "--max-error") + std::string(": found with --to texture, expected vertices"));
-	}
-	if (options.unwrap && options.target != BakeTarget::texture && isGiven(*options.app, "--to"))
-	{
-		refuse("--unwrap: found with --to " + options.to + ", expected --to texture");
-	}
+	refuseIf(options.form.target != BakeTarget::texture && options.texture_px > 0 && isGiven(*options.app, "--to"),
+			 "--to: found '" + options.to + "' with --texture, expected --to texture");
+	refuseIf(options.form.target == BakeTarget::texture && (isGiven(*options.app, "--max-error") || options.automatic),
+			 (options.automatic ? "--auto" : "--max-error") + std::string(": found with --to texture, expected vertices"));
+	refuseIf(options.unwrap && options.form.target != BakeTarget::texture && isGiven(*options.app, "--to"),
+			 "--unwrap: found with --to " + options.to + ", expected --to texture");
 	const std::vector<std::string>& files = options.outputs.files;
-	if (options.unwrap && !files.empty() && std::all_of(files.begin(), files.end(), isTextureName))
-	{
-		refuse("--unwrap: found only textures to write, expected a level as well, which has the coordinates");
-	}
+	refuseIf(options.unwrap && !files.empty() && std::all_of(files.begin(), files.end(), isTextureName),
+			 "--unwrap: found only textures to write, expected a level as well, which has the coordinates");
 	options.charts.size_px = options.texture_px > 0 || options.charts.texel_m > 0.0 ? options.texture_px : kStandardTexture;
-	if ((options.target == BakeTarget::texture || options.unwrap) && options.texture_px == 0)
+	if ((options.form.target == BakeTarget::texture || options.unwrap) && options.texture_px == 0)
 	{
 		options.texture_px = kStandardTexture;
 	}
 	if (options.texture_px > 0)
 	{
-		options.to = options.target == BakeTarget::texture ? options.to : std::string(kBakeTargets.back());
-		options.target = BakeTarget::texture;
+		options.to = options.form.target == BakeTarget::texture ? options.to : std::string(kBakeTargets.back());
+		options.form.target = BakeTarget::texture;
 	}
 	const std::string ending = endingOf(options.level.level);
 	for (const std::string& path : options.outputs.files)
 	{
-		if (endingOf(path) == ".gltf" && ending != ".gltf")
-		{
-			refuse(path + ": found the ending of a glTF in text, expected .glb, since the level is none");
-		}
+		refuseIf(endingOf(path) == ".gltf" && ending != ".gltf",
+				 path + ": found the ending of a glTF in text, expected .glb, since the level is none");
 	}
-	if (std::isinf(settings.radius_m) && settings.falloff == Falloff::linear)
-	{
-		refuse("--radius: found 'inf', expected metres, since --falloff linear is a share of it");
-	}
-	if (options.outputs.share && (settings.max_error > 0.0 || options.automatic))
-	{
-		refuse("--share: found with " + std::string(options.automatic ? "--auto" : "--max-error") +
-			   ", expected one of them, since what is next depends on all so far");
-	}
+	refuseIf(std::isinf(settings.radius_m) && settings.falloff == Falloff::linear,
+			 "--radius: found 'inf', expected metres, since --falloff linear is a share of it");
+	refuseIf(options.outputs.share && (settings.max_error > 0.0 || options.automatic),
+			 "--share: found with " + std::string(options.automatic ? "--auto" : "--max-error") +
+				 ", expected one of them, since what is next depends on all so far");
 	if (options.automatic)
 	{
 		settings.max_error = options.max_bytes > 0 || settings.max_error > 0.0 ? settings.max_error : kStandardError;
-		const bool one_value = options.target == BakeTarget::color || options.target == BakeTarget::color_alpha;
+		const bool one_value = options.form.target == BakeTarget::color || options.form.target == BakeTarget::color_alpha;
 		settings.sides = one_value ? BakeSides::mean : settings.sides;
 	}
 	settings.falloff_u_m = falloffUnit(options.falloff_u_m, settings.radius_m, settings.falloff);
@@ -256,7 +241,7 @@ void addBakeSettings(Facts& facts, const BakeOptions& options)
 	}
 	if (!probes && !texture)
 	{
-		facts.text("instances", kBakeInstances[static_cast<std::size_t>(options.instances)]);
+		facts.text("instances", kBakeInstances[static_cast<std::size_t>(options.form.instances)]);
 		facts.text("fit", kBakeFits[static_cast<std::size_t>(settings.fit)]);
 		facts.text("sides", kBakeSides[static_cast<std::size_t>(settings.sides)]);
 	}

@@ -30,11 +30,8 @@ struct BakeOptions
 	std::string volumes;       // drawn as well; empty: none
 	bool mask = false;         // how they are drawn
 	int directions = 128;
-	bool color = false;
 	std::string to = "visibility";
-	BakeTarget target = BakeTarget::visibility;
-	std::string attribute; // that the target names
-	BakeInstances instances = BakeInstances::separate;
+	GltfBake form; // target, attribute, instances and color of it
 	std::vector<std::string> occluders;
 	std::vector<std::string> receivers;
 	std::string from; // the detailed level; empty: none

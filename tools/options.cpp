@@ -459,16 +459,10 @@ void addRun(CLI::App& app, Outputs& outputs, bool shares)
 
 void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endings, const std::vector<std::string>& inputs)
 {
-	if (outputs.files.empty() && outputs.json.empty())
-	{
-		refuse("-o: nothing to write, expected -o FILE or --json FILE");
-	}
+	refuseIf(outputs.files.empty() && outputs.json.empty(), "-o: nothing to write, expected -o FILE or --json FILE");
 	const bool to_files =
 		std::any_of(outputs.files.begin(), outputs.files.end(), [](const std::string& path) { return path != "-"; });
-	if (!outputs.depfile.empty() && !to_files)
-	{
-		refuse("--depfile: nothing depends on the files read, expected -o FILE as well");
-	}
+	refuseIf(!outputs.depfile.empty() && !to_files, "--depfile: nothing depends on the files read, expected -o FILE as well");
 	for (const std::string& path : outputs.files)
 	{
 		const std::string_view ending = formatOf(path, endings);

@@ -198,10 +198,7 @@ void runVerb(const Verb& verb, VerbProgress& progress)
 	const std::string share = given("--share");
 	if (cache.empty())
 	{
-		if (!share.empty())
-		{
-			refuse("--share: found without --cache, expected --cache DIR, where the share's results are kept");
-		}
+		refuseIf(!share.empty(), "--share: found without --cache, expected --cache DIR, where the share's results are kept");
 		verb.run(progress);
 		return;
 	}

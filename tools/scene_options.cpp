@@ -146,17 +146,18 @@ OptionRow cameraRow(CameraOptions& options)
 			"views, the same ones each time; for K > 1 the names of outputs get -1, -2, ... before their ending"};
 }
 
-OptionRow sizeRow(CameraOptions& options, const std::string& standard)
+OptionRow sizeRow(int& width_px, int& height_px)
 {
 	return {"--size",
 			takesParsed("WxH",
-						[&options](const std::string& name, const std::string& text)
+						[&width_px, &height_px](const std::string& name, const std::string& text)
 						{
 							const glm::ivec2 size = sizeOf(name, text);
-							options.width_px = size.x;
-							options.height_px = size.y;
+							width_px = size.x;
+							height_px = size.y;
 						}),
-			"Width and height of the picture in pixels (default " + standard + ")"};
+			"Width and height of the picture in pixels (default " + std::to_string(width_px) + "x" + std::to_string(height_px) +
+				")"};
 }
 
 void addCameraOptions(CLI::App& app, CameraOptions& options)
@@ -180,7 +181,7 @@ void addCameraOptions(CLI::App& app, CameraOptions& options)
 				{"--world-to-camera", takesMatrix(options.camera_from_world),
 				 "Where the camera stands, as a rotation and translation: 16 numbers, column by column; it looks down its -z",
 				 excludes("--camera or --eye")},
-				sizeRow(options),
+				sizeRow(options.width_px, options.height_px),
 				{"--allow-inside", takesFlag(options.allow_inside),
 				 "Accept a camera inside something solid, for levels whose faces are turned round"}});
 }

@@ -59,9 +59,9 @@ Bounds boxOf(const std::string& option, const std::string& text);
 // --camera, --eye, --target, --fov, --near, --projection, --world-to-camera, --size, --allow-inside. Then checkCameras().
 void addCameraOptions(CLI::App& app, CameraOptions& options);
 
-// --camera alone; --size alone, `standard` is what the help calls the default.
+// --camera alone; --size alone, whose numbers have their defaults.
 OptionRow cameraRow(CameraOptions& options);
-OptionRow sizeRow(CameraOptions& options, const std::string& standard = "1280x720");
+OptionRow sizeRow(int& width_px, int& height_px);
 
 // --depth, --clip, --sky-depth, --depth-channel, --normal-channels, --normal-space, --normal-range: what the file's channels hold.
 inline constexpr std::array<std::string_view, 7> kChannelOptions{

@@ -75,11 +75,7 @@ template <class Value> std::vector<Value> spread(const BakeInput& input, const s
 GltfBake bakeOf(const BakeOptions& options)
 {
 	const BakeSettings& settings = options.settings;
-	GltfBake bake;
-	bake.target = options.target;
-	bake.attribute = options.attribute;
-	bake.instances = options.instances;
-	bake.color = options.color;
+	GltfBake bake = options.form;
 	bake.in_red = options.to.ends_with(":orm");
 	bake.others_stay = !options.level.load.ignore.empty() || !options.receivers.empty();
 	bake.kind = options.volumes.empty() ? BakedKind::visibility
@@ -371,11 +367,9 @@ void checkBytes(const BakeOptions& options, const BakeFile& target, const Level&
 	in.visibility = values;
 	in.back = options.settings.sides == BakeSides::separate ? in.visibility : std::span<const float>();
 	const std::size_t bytes = bakeInto(target.file, target.places, in, {}).bytes_added;
-	if (options.max_bytes > 0 && bytes > options.max_bytes)
-	{
-		refuse("--max-bytes: found " + std::to_string(options.max_bytes) + ", expected at least " + std::to_string(bytes) +
-			   ", which values at the vertices take");
-	}
+	refuseIf(options.max_bytes > 0 && bytes > options.max_bytes, "--max-bytes: found " + std::to_string(options.max_bytes) +
+																	 ", expected at least " + std::to_string(bytes) +
+																	 ", which values at the vertices take");
 }
 
 // Two rows of a table, and the same for programs.

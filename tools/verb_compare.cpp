@@ -96,11 +96,9 @@ template <class Picture> std::vector<uint8_t> readMask(const std::string& path, 
 		return t_call != nullptr ? t_call->counted : std::vector<uint8_t>{};
 	}
 	SurfaceMask mask = readSurfaceMask(path);
-	if (mask.width_px != reference.width_px || mask.height_px != reference.height_px)
-	{
-		refuseInput(path + ": size", std::to_string(mask.width_px) + "x" + std::to_string(mask.height_px) + " pixels",
-					std::to_string(reference.width_px) + "x" + std::to_string(reference.height_px) + " as " + reference.path);
-	}
+	refuseInputIf(mask.width_px != reference.width_px || mask.height_px != reference.height_px, path + ": size",
+				  std::to_string(mask.width_px) + "x" + std::to_string(mask.height_px) + " pixels",
+				  std::to_string(reference.width_px) + "x" + std::to_string(reference.height_px) + " as " + reference.path);
 	if (std::find(mask.surface.begin(), mask.surface.end(), uint8_t{1}) == mask.surface.end())
 	{
 		throw Error(ExitCode::invalid_input, path + ": depth: found sky alone, expected a surface somewhere");
@@ -161,10 +159,7 @@ double judged(const CompareOptions& options, const Comparison& comparison)
 		return 0.0;
 	}
 	const std::optional<double> error = errorBy(comparison, options.metric);
-	if (!error)
-	{
-		refuseInput(options.test + ": size", "no window of 11x11 pixels that counts", "one for --metric ssim");
-	}
+	refuseInputIf(!error, options.test + ": size", "no window of 11x11 pixels that counts", "one for --metric ssim");
 	return *error;
 }
 
@@ -185,6 +180,24 @@ Facts headFacts(const CompareOptions& options, const Picture& test, const Pictur
 	facts.whole("height", test.height_px);
 	facts.whole("pixels", pixels);
 	return facts;
+}
+
+void addVerdict(Facts& facts, const CompareOptions& options, double found)
+{
+	if (options.max_error)
+	{
+		facts.number("found", found);
+		facts.number("allowed", *options.max_error);
+		facts.text("verdict", found > *options.max_error ? "exceeded" : "within");
+	}
+}
+
+void refuseWorse(const CompareOptions& options, const std::string& what, double found, const std::string& unit = "")
+{
+	refuseIf(options.max_error && found > *options.max_error,
+			 options.test + ": " + what + ": found " + doubleText(found) + unit + ", expected at most " +
+				 doubleText(options.max_error.value_or(0.0)),
+			 ExitCode::difference);
 }
 
 std::string summaryOf(const CompareOptions& options, const VisibilityImage& test, const VisibilityImage& reference,
@@ -212,10 +225,8 @@ std::string summaryOf(const CompareOptions& options, const VisibilityImage& test
 	if (options.max_error)
 	{
 		facts.text("metric", nameOf(options.metric));
-		facts.number("found", found);
-		facts.number("allowed", *options.max_error);
-		facts.text("verdict", found > *options.max_error ? "exceeded" : "within");
 	}
+	addVerdict(facts, options, found);
 	return facts.json();
 }
 
@@ -249,12 +260,7 @@ std::string bentSummary(const CompareOptions& options, const BentImage& test, co
 				   {{"mean", angles.mean_deg}, {"rmse", angles.rmse_deg}, {"p95", angles.p95_deg}, {"max", angles.max_deg}});
 	facts.whole("worst_x", angles.worst_x);
 	facts.whole("worst_y", angles.worst_y);
-	if (options.max_error)
-	{
-		facts.number("found", angles.mean_deg);
-		facts.number("allowed", *options.max_error);
-		facts.text("verdict", angles.mean_deg > *options.max_error ? "exceeded" : "within");
-	}
+	addVerdict(facts, options, angles.mean_deg);
 	return facts.json();
 }
 
@@ -266,11 +272,7 @@ void runBent(const CompareOptions& options)
 	const std::vector<uint8_t> counted = readMask(options.mask, reference);
 	const BentAngles angles = anglesBetween(test, reference, counted);
 	writeOutputs(options.outputs, {}, bentSummary(options, test, reference, angles), {}, bentTable(test, reference, angles));
-	if (options.max_error && angles.mean_deg > *options.max_error)
-	{
-		throw Error(ExitCode::difference, options.test + ": mean angle: found " + doubleText(angles.mean_deg) +
-											  " degrees, expected at most " + doubleText(*options.max_error));
-	}
+	refuseWorse(options, "mean angle", angles.mean_deg, " degrees");
 }
 
 void run(CompareOptions& options, VerbProgress& progress)
@@ -298,11 +300,7 @@ void run(CompareOptions& options, VerbProgress& progress)
 	addSide(files, options.outputs, summaryOf(options, test, reference, comparison, uncertainty, found), {},
 			table(test, reference, comparison, uncertainty, options.settings));
 	files.commit();
-	if (options.max_error && found > *options.max_error)
-	{
-		throw Error(ExitCode::difference, options.test + ": " + std::string(nameOf(options.metric)) + ": found " +
-											  doubleText(found) + ", expected at most " + doubleText(*options.max_error));
-	}
+	refuseWorse(options, std::string(nameOf(options.metric)), found);
 }
 
 } // namespace

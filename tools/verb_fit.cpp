@@ -28,7 +28,6 @@ struct FitOptions
 	std::string methods;
 	std::string start;
 	LoadSettings load;
-	CameraOptions size; // width and height of it
 	FitSettings settings;
 	Outputs outputs;
 };
@@ -49,9 +48,7 @@ void declare(CLI::App& app, FitOptions& options)
 					 {"--start", takesText(options.start, "FILE.json"), "Recipes to begin with (default: those of --recipe rays)"},
 					 {"--radius", takesNumber(settings.radius_m, 1e-6, 1e9, "M"),
 					  "Reach of occlusion in metres, with linear falloff (default: by each level's size, 1.5 m at most)"}});
-	options.size.width_px = settings.width_px;
-	options.size.height_px = settings.height_px;
-	addOptions(app, {sizeRow(options.size),
+	addOptions(app, {sizeRow(settings.width_px, settings.height_px),
 					 {"--views", takesWhole(settings.views, 1, 64), "Views of each level, the most informative ones (default 2)"},
 					 {"--rays", takesWhole(settings.reference_rays, 1, 1 << 20), "Rays a pixel of the reference (default 256)"}});
 	addLoadOptions(app, options.load);
@@ -125,8 +122,6 @@ void run(FitOptions& options, VerbProgress& progress)
 	{
 		addInputs({options.start}, how);
 	}
-	options.settings.width_px = options.size.width_px;
-	options.settings.height_px = options.size.height_px;
 	const FitReport report = fitRecipes(options.levels, options.held_out, options.load, options.settings, how);
 	std::vector<std::string> read;
 	for (const FitLevel& level : report.levels)

@@ -157,11 +157,10 @@ void describeBake(const auto& record, Facts& facts)
 	}
 	facts.line("baked: " + text("to") + ", radius " + text("radius_m") + " m, falloff " + text("falloff") + ", " + text("rays") +
 			   " rays, by nook " + text("version"));
-	facts.text("bake_to", text("to"));
-	facts.text("bake_radius_m", text("radius_m"));
-	facts.text("bake_falloff", text("falloff"));
-	facts.text("bake_rays", text("rays"));
-	facts.text("bake_version", text("version"));
+	for (const char* const name : {"to", "radius_m", "falloff", "rays", "version"})
+	{
+		facts.text(std::string("bake_") + name, text(name));
+	}
 	facts.text("bake_command", text("command"), "bake command");
 }
 

@@ -103,10 +103,8 @@ void checkReplaceable(const std::string& path)
 		begin.resize(std::fread(begin.data(), 1, begin.size(), file));
 		std::fclose(file);
 	}
-	if (file == nullptr || (!begin.empty() && begin != kFirst))
-	{
-		throw Error(ExitCode::usage, path + ": --progress: found a file that is no log of progress, expected one, or a new name");
-	}
+	refuseIf(file == nullptr || (!begin.empty() && begin != kFirst),
+			 path + ": --progress: found a file that is no log of progress, expected one, or a new name");
 }
 
 // Opening it again would give it a place of its own in what is written there.
@@ -159,10 +157,7 @@ ProgressLog::ProgressLog(const std::string& path, std::string_view verb) : m_nam
 		m_file = openFile(path, "wb");
 		m_owned = true;
 	}
-	if (m_file == nullptr)
-	{
-		throw Error(ExitCode::file, path + ": cannot be written: " + std::strerror(errno));
-	}
+	refuseIf(m_file == nullptr, path + ": cannot be written: " + std::strerror(errno), ExitCode::file);
 	write(std::string(kFirst) + ", \"verb\": " + jsonText(verb) + ", \"version\": " + jsonText(NOOK_VERSION) + "}");
 }
 

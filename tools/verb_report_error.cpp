@@ -51,7 +51,7 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 	addOptions(
 		app,
 		{cameraRow(options.camera),
-		 sizeRow(options.camera, "320x180"),
+		 sizeRow(settings.width_px, settings.height_px),
 		 {"--grid", takesChoice(namesOf<GridSize>(), settings.grid),
 		  "How much is tried: quick (84 candidates), normal (default), or full (every product of counts, samples, filters, "
 		  "resolutions, thickness and StatVO's tables)",
@@ -111,7 +111,11 @@ void settle(ErrorOptions& options)
 		refuseValueIf(method != "rays" && assetNamed(method) == nullptr && methodNamed(method) == nullptr, "--methods", method,
 					  "some of " + measuredNames());
 	}
-	const bool sized = isGiven(*options.app, "--size");
+	if (options.quick && !isGiven(*options.app, "--size"))
+	{
+		settings.width_px = 240;
+		settings.height_px = 135;
+	}
 	if (options.quick)
 	{
 		settings.grid = GridSize::quick;
@@ -122,8 +126,6 @@ void settle(ErrorOptions& options)
 	{
 		settings.measure.slowest_s = options.quick ? kSlowestQuickPicture_s : kSlowestPicture_s;
 	}
-	settings.width_px = sized ? options.camera.width_px : options.quick ? 240 : 320;
-	settings.height_px = sized ? options.camera.height_px : options.quick ? 135 : 180;
 	settings.camera = options.camera.automatic > 0 ? "" : options.camera.camera;
 	settings.automatic = options.camera.automatic;
 	settings.version = NOOK_VERSION;

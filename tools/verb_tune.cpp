@@ -31,7 +31,6 @@ struct TuneOptions
 	LoadSettings load;
 	std::string budget;
 	std::string methods;
-	CameraOptions size; // width and height of it
 	TuneSettings settings;
 	TuneEmitSettings emit;
 	std::string folder;
@@ -70,7 +69,7 @@ void declare(CLI::App& app, TuneOptions& options)
 				{"--radius", takesNumber(settings.radius_m, 1e-6, 1e9, "M"),
 				 "Reach of occlusion in metres, with linear falloff (default: by each level's size, 1.5 m at most)"}});
 	addOptions(app,
-			   {sizeRow(options.size),
+			   {sizeRow(settings.width_px, settings.height_px),
 				{"--views", takesWhole(settings.views, 1, 64), "Views of each level, the most informative ones (default 4)"},
 				{"--rays", takesWhole(settings.reference_rays, 1, 1 << 20), "Rays a pixel of the reference (default 256)"},
 				{"--repetitions", takesWhole(settings.repetitions, 1, 1000), "Drawings of what gets to the end (default 7)"},
@@ -168,8 +167,6 @@ void check(TuneOptions& options)
 		settings.goal.budget_s = secondsOf(options.budget);
 	}
 	settings.methods = searchedMethods(options);
-	settings.width_px = options.size.width_px;
-	settings.height_px = options.size.height_px;
 	settings.version = NOOK_VERSION;
 	options.emit.version = NOOK_VERSION;
 	options.emit.load = options.load;

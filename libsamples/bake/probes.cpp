@@ -38,20 +38,16 @@ ProbeGrid placeProbes(const Bounds& bounds, double spacing_m)
 	for (int axis = 0; axis < 3; ++axis)
 	{
 		const double count = std::ceil((bounds.most[axis] - bounds.least[axis]) / spacing_m);
-		if (!(count <= kMostProbesAlong))
-		{
-			refuseInput("probes", "more than " + std::to_string(kMostProbesAlong) + " probes along an axis of the level",
-						"at most that", ExitCode::usage);
-		}
+		refuseInputIf(!(count <= kMostProbesAlong), "probes",
+					  "more than " + std::to_string(kMostProbesAlong) + " probes along an axis of the level", "at most that",
+					  ExitCode::usage);
 		grid.count[axis] = std::max(1, static_cast<int>(count));
 		grid.origin[axis] = 0.5 * (bounds.least[axis] + bounds.most[axis]) - 0.5 * spacing_m * (grid.count[axis] - 1);
 		probes *= grid.count[axis];
 	}
-	if (probes > static_cast<double>(kMostProbes))
-	{
-		refuseInput("probes", std::to_string(static_cast<uint64_t>(probes)) + " probes in the level",
-					"at most " + std::to_string(kMostProbes), ExitCode::usage);
-	}
+	refuseInputIf(probes > static_cast<double>(kMostProbes), "probes",
+				  std::to_string(static_cast<uint64_t>(probes)) + " probes in the level", "at most " + std::to_string(kMostProbes),
+				  ExitCode::usage);
 	grid.texels.assign(static_cast<std::size_t>(probes), {128, 128, 128, 0});
 	return grid;
 }

@@ -212,9 +212,9 @@ constexpr int kRowsAtOnce = 64;
 constexpr std::size_t kSamplesOfTexel = std::size_t{kSamplesAcross} * kSamplesAcross;
 constexpr std::size_t kRayedOfTexel = 4; // samples per texel that get rays: enough of both sides for a soft edge
 
-[[noreturn]] void refuseUvs(const Level& level, const std::string& found, const std::string& expected)
+void refuseUvsIf(bool condition, const Level& level, const std::string& found, const std::string& expected)
 {
-	refuseInput(level.name + ": texture coordinates", found, expected);
+	refuseInputIf(condition, level.name + ": texture coordinates", found, expected);
 }
 
 void checkUvs(const Level& level, std::span<const glm::vec2> uvs)
@@ -222,38 +222,30 @@ void checkUvs(const Level& level, std::span<const glm::vec2> uvs)
 	glm::vec2 least(1e30F);
 	glm::vec2 most(-1e30F);
 	std::size_t flat = 0;
+	bool finite = true;
 	for (const glm::uvec3& t : level.triangles)
 	{
 		for (int corner = 0; corner < 3; ++corner)
 		{
 			const glm::vec2 uv = uvs[t[corner]];
-			if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
-			{
-				refuseUvs(level, "none at some vertices", "a set for all of them");
-			}
+			finite = finite && std::isfinite(uv.x) && std::isfinite(uv.y);
 			least = glm::min(least, uv);
 			most = glm::max(most, uv);
 		}
 		flat += uvs[t.x] == uvs[t.y] || uvs[t.y] == uvs[t.z] || uvs[t.z] == uvs[t.x] ? 1U : 0U;
 	}
-	if (least == most)
-	{
-		refuseUvs(level, "none", "a set of their own for the texture, in a format that has them");
-	}
+	refuseUvsIf(!finite, level, "none at some vertices", "a set for all of them");
+	refuseUvsIf(least == most, level, "none", "a set of their own for the texture, in a format that has them");
 	constexpr float kRounding = 1e-5F;
-	if (least.x < -kRounding || least.y < -kRounding || most.x > 1.0F + kRounding || most.y > 1.0F + kRounding)
+	const auto text = [](float value)
 	{
-		const auto text = [](float value)
-		{
-			return numberText(static_cast<double>(value));
-		};
-		refuseUvs(level, "some from (" + text(least.x) + ", " + text(least.y) + ") to (" + text(most.x) + ", " + text(most.y) + ")",
-				  "all from 0 to 1");
-	}
-	if (2 * flat > level.triangles.size())
-	{
-		refuseUvs(level, std::to_string(flat) + " triangles without an area in the texture", "charts of all triangles");
-	}
+		return numberText(static_cast<double>(value));
+	};
+	refuseUvsIf(least.x < -kRounding || least.y < -kRounding || most.x > 1.0F + kRounding || most.y > 1.0F + kRounding, level,
+				"some from (" + text(least.x) + ", " + text(least.y) + ") to (" + text(most.x) + ", " + text(most.y) + ")",
+				"all from 0 to 1");
+	refuseUvsIf(2 * flat > level.triangles.size(), level, std::to_string(flat) + " triangles without an area in the texture",
+				"charts of all triangles");
 }
 
 // The samples of one texel that get rays: in its largest chart, spread over that chart's part of the texel.
@@ -462,10 +454,7 @@ TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, in
 	{
 		const int rows = std::min(kRowsAtOnce, size_px - first);
 		const std::vector<uint32_t> owners = rasterise(level, uvs, size_px, first, rows, overlaps, hit);
-		if (overlaps > 0)
-		{
-			refuseUvs(level, "triangles that overlap in the texture", "a place of its own for each");
-		}
+		refuseUvsIf(overlaps > 0, level, "triangles that overlap in the texture", "a place of its own for each");
 		RowSamples all = samplesOf(level, uvs, owners, charts, first, rows, bake);
 		const auto seed = settings.seed + static_cast<uint32_t>(first) * 0x9e3779b9U; // a different sequence per block of rows
 		traceSamples(tracer, level, all.samples, settings, rays, seed, withoutProgress(run), "rays");

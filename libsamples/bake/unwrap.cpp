@@ -155,10 +155,7 @@ ChartedLevel chartLevel(const Level& level, std::span<const UnwrapPiece> pieces,
 			made.number.push_back(number);
 		}
 	}
-	if (made.scaled.empty())
-	{
-		refuseInput(level.name + ": unwrap", "no triangle with an area", "a surface");
-	}
+	refuseInputIf(made.scaled.empty(), level.name + ": unwrap", "no triangle with an area", "a surface");
 	return made;
 }
 

@@ -34,4 +34,22 @@ private:
 	ExitCode m_code;
 };
 
+// Throws Error where a condition holds. The message is made either way.
+inline void refuseIf(bool condition, const std::string& message, ExitCode code = ExitCode::usage)
+{
+	if (condition)
+	{
+		throw Error(code, message);
+	}
+}
+
+// place.fail(words…), which throws Error, where a condition holds.
+template <class Place, class... Words> void failIf(bool condition, const Place& place, const Words&... words)
+{
+	if (condition)
+	{
+		place.fail(words...);
+	}
+}
+
 } // namespace nook

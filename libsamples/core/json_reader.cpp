@@ -102,6 +102,14 @@ void JsonValue::expected(const std::string& what) const
 	fail(describe(*value), what);
 }
 
+void JsonValue::require(bool condition, std::string_view what) const
+{
+	if (!condition)
+	{
+		expected(std::string(what));
+	}
+}
+
 std::string JsonValue::nameOfField(std::string_view field) const
 {
 	return field.empty() ? element : element.empty() ? std::string(field) : element + "." + std::string(field);

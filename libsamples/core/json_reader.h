@@ -26,6 +26,7 @@ struct JsonValue
 
 	[[noreturn]] void fail(const std::string& found, const std::string& expected) const;
 	[[noreturn]] void expected(const std::string& what) const; // describes the value found
+	void require(bool condition, std::string_view what) const; // that the condition holds, else as expected()
 
 	bool has(std::string_view field) const;
 	JsonValue at(std::string_view field) const; // throws if the field is missing

@@ -44,5 +44,12 @@ inline uint64_t littleEndian(std::string_view bytes, std::size_t at, std::size_t
 {
 	throw Error(code, where + ": found " + found + ", expected " + expected);
 }
+template <class... Words> void refuseInputIf(bool condition, const Words&... words)
+{
+	if (condition)
+	{
+		refuseInput(words...);
+	}
+}
 
 } // namespace nook

@@ -334,18 +334,14 @@ PassesJson passJson(const ShadePass& pass)
 void shorten(PatternFile& file, std::size_t count, const std::string& path)
 {
 	Pattern& pattern = file.pattern;
-	if (count > pattern.count())
-	{
-		refuseInput(path + ": --counts", std::to_string(pattern.count()) + " samples", std::to_string(count) + " or more");
-	}
+	refuseInputIf(count > pattern.count(), path + ": --counts", std::to_string(pattern.count()) + " samples",
+				  std::to_string(count) + " or more");
 	if (count == pattern.count())
 	{
 		return;
 	}
-	if (!file.recipe || file.recipe->order != Order::progressive)
-	{
-		refuseInput(path + ": recipe", "a pattern whose first samples are none", "one made with --order progressive");
-	}
+	refuseInputIf(!file.recipe || file.recipe->order != Order::progressive, path + ": recipe",
+				  "a pattern whose first samples are none", "one made with --order progressive");
 	pattern.points.resize(count);
 	pattern.powers.clear();
 	pattern.weights = exactCells(pattern.domain, pattern.points, {}).integrals;
@@ -354,10 +350,8 @@ void shorten(PatternFile& file, std::size_t count, const std::string& path)
 // The first `count` samples of each variant of a tile. Their weights stay what they were made for, but for their sum.
 void shorten(const TileFile& file, std::size_t count, const std::string& path, std::vector<Pattern>& variants)
 {
-	if (count > variants.front().count())
-	{
-		refuseInput(path + ": --counts", std::to_string(variants.front().count()) + " samples", std::to_string(count) + " or more");
-	}
+	refuseInputIf(count > variants.front().count(), path + ": --counts", std::to_string(variants.front().count()) + " samples",
+				  std::to_string(count) + " or more");
 	refuseIf(count < variants.front().count() && !(file.recipe && file.recipe->progressive),
 			 path + ": --counts: found a tile of " + std::to_string(variants.front().count()) +
 				 " samples, expected all of them, or one made with --progressive",
@@ -371,10 +365,8 @@ void shorten(const TileFile& file, std::size_t count, const std::string& path, s
 		variant.points.resize(count);
 		variant.weights.resize(count);
 		const double sum = sumOver(variant.weights);
-		if (!(sum > 0.0))
-		{
-			refuseInput(path + ": --counts", "a variant whose first " + std::to_string(count) + " samples have no weight", "some");
-		}
+		refuseInputIf(!(sum > 0.0), path + ": --counts",
+					  "a variant whose first " + std::to_string(count) + " samples have no weight", "some");
 		for (double& w : variant.weights)
 		{
 			w /= sum;
@@ -656,11 +648,9 @@ void checkWindows(const ModuleSettings& settings)
 	for (const ModuleMethod& method : settings.methods)
 	{
 		const std::size_t variants = windowOf(settings, method);
-		if (variants < 2 || variants != windowOf(settings, settings.methods.front()))
-		{
-			refuseInput("--filter window: " + std::string(nameOf(method.method)),
-						std::to_string(method.variants.size()) + " variants", "tiles of one size for all methods");
-		}
+		refuseInputIf(variants < 2 || variants != windowOf(settings, settings.methods.front()),
+					  "--filter window: " + std::string(nameOf(method.method)),
+					  std::to_string(method.variants.size()) + " variants", "tiles of one size for all methods");
 	}
 }
 

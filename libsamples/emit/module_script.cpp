@@ -139,10 +139,8 @@ Field fieldOf(const std::string& line)
 {
 	static const std::regex form(R"(^\t(?:std::)?(\w+) (\w+)(?:\[(\d+)\])?(?: = ([^;]+))?;(?:\s*// (.*))?$)");
 	std::smatch match;
-	if (!std::regex_match(line, match, form))
-	{
-		throw Error(ExitCode::runtime, "nook_block.h: found '" + line + "', expected a member with a default");
-	}
+	refuseIf(!std::regex_match(line, match, form), "nook_block.h: found '" + line + "', expected a member with a default",
+			 ExitCode::runtime);
 	const int count = match[3].matched ? std::stoi(match[3]) : 0;
 	const std::vector<std::string> zeros(static_cast<std::size_t>(count), "0");
 	const std::string value =
@@ -191,10 +189,8 @@ std::string statementOf(const std::string& line, const Structs& structs, Tongue 
 	code = tongue == python ? withPythonChoice(code) : code;
 	static const std::regex strange(R"(std::|static_cast|->|\bauto\b|\bstruct\b|[&*] *(const|\w+ =[^=])|\bp[-+]\d)");
 	static const std::regex typed(R"(\b(double|float|bool|int)\b)");
-	if (std::regex_search(code, strange) || (tongue != csharp && std::regex_search(code, typed)))
-	{
-		throw Error(ExitCode::runtime, "nook_block.h: found '" + line + "', expected a statement that other languages can express");
-	}
+	refuseIf(std::regex_search(code, strange) || (tongue != csharp && std::regex_search(code, typed)),
+			 "nook_block.h: found '" + line + "', expected a statement that other languages can express", ExitCode::runtime);
 	return code + (tongue == python && comment < line.size() ? "#" + line.substr(comment + 2) : line.substr(comment));
 }
 

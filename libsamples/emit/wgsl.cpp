@@ -246,17 +246,17 @@ private:
 		return peek() == text && !next().empty();
 	}
 
-	[[noreturn]] void refuse(const std::string& found, const std::string& expected) const
+	void refuseIf(bool condition, const std::string& found, const std::string& expected) const
 	{
-		refuseGlsl(m_where, "'" + found + "'", expected);
+		if (condition)
+		{
+			refuseGlsl(m_where, "'" + found + "'", expected);
+		}
 	}
 
 	void expect(const std::string& text)
 	{
-		if (!take(text))
-		{
-			refuse(peek(), "'" + text + "'");
-		}
+		refuseIf(!take(text), peek(), "'" + text + "'");
 	}
 
 	// The text in front of a mark that must follow.
@@ -269,20 +269,14 @@ private:
 	std::string type()
 	{
 		const std::string word = next();
-		if (typeNamed(word).empty())
-		{
-			refuse(word, "float, int, uint, bool or a vector of them");
-		}
+		refuseIf(typeNamed(word).empty(), word, "float, int, uint, bool or a vector of them");
 		return typeNamed(word);
 	}
 
 	std::string name()
 	{
 		const std::string word = next();
-		if (std::isalpha(static_cast<unsigned char>(word[0])) == 0)
-		{
-			refuse(word, "a name");
-		}
+		refuseIf(std::isalpha(static_cast<unsigned char>(word[0])) == 0, word, "a name");
 		return word;
 	}
 
@@ -410,10 +404,7 @@ private:
 		{
 			std::string of = typeNamed(kind);
 			const char* const space = of.empty() ? " " : "<uniform> ";
-			if (of.empty() && !std::regex_match(kind, parts, sampler))
-			{
-				refuse(kind + " " + peek(), "a two-dimensional texture");
-			}
+			refuseIf(of.empty() && !std::regex_match(kind, parts, sampler), kind + " " + peek(), "a two-dimensional texture");
 			if (of.empty())
 			{
 				of = (parts[2].matched ? "texture_2d_array<" : "texture_2d<") + (parts.length(1) == 0 ? "f" : parts.str(1)) + "32>";
@@ -424,10 +415,7 @@ private:
 
 	void declareFunction(std::size_t start, const std::string& result, const std::string& called)
 	{
-		if (m_functions.contains(called))
-		{
-			refuse(called, "one function of that name, since WGSL has no overloads");
-		}
+		refuseIf(m_functions.contains(called), called, "one function of that name, since WGSL has no overloads");
 		std::vector<std::string>& types = m_functions[called];
 		std::vector<std::string> names;
 		declared(called, result);
@@ -535,15 +523,11 @@ private:
 		{
 			return left.text + op;
 		}
-		if (!isAmong(" = += -= *= /= %= &= |= ^= ", op) || (sizeOf(left.type) > 1 && left.text.find('.') < left.text.size()))
-		{
-			refuse(left.text + " " + op, "a declaration, if, for, while, return, or an assignment to a variable or one component");
-		}
+		refuseIf(!isAmong(" = += -= *= /= %= &= |= ^= ", op) || (sizeOf(left.type) > 1 && left.text.find('.') < left.text.size()),
+				 left.text + " " + op, "a declaration, if, for, while, return, or an assignment to a variable or one component");
 		const WgslValue right = expression();
-		if (right.type != left.type && (op == "=" || right.type != scalarOf(left.type)))
-		{
-			refuse(right.text, "a value of type " + left.type);
-		}
+		refuseIf(right.type != left.type && (op == "=" || right.type != scalarOf(left.type)), right.text,
+				 "a value of type " + left.type);
 		return left.text + " " + op + " " + right.text;
 	}
 
@@ -564,10 +548,7 @@ private:
 			const std::string text = "select(" + listed(no) + ", " + listed(yes) + ", " + listed(value) + ")";
 			value = {text, yes.type, kWhole, {value.text, yes.text, no.text}};
 		}
-		if (!type.empty() && value.type != type)
-		{
-			refuse(value.text, "a value of type " + type);
-		}
+		refuseIf(!type.empty() && value.type != type, value.text, "a value of type " + type);
 		return value;
 	}
 
@@ -599,10 +580,8 @@ private:
 				continue;
 			}
 			const bool scales = rank >= kSum && (sizeOf(left.type) == 1 || sizeOf(right.type) == 1);
-			if (scales ? scalarOf(left.type) != scalarOf(right.type) : left.type != right.type)
-			{
-				refuse(left.text + " " + op + " " + right.text, "operands of one type");
-			}
+			refuseIf(scales ? scalarOf(left.type) != scalarOf(right.type) : left.type != right.type,
+					 left.text + " " + op + " " + right.text, "operands of one type");
 			const std::string of = sizeOf(right.type) > 1 ? right.type : left.type;
 			const std::string text = operand(left, rank, false) + " " + op + " " + operand(right, rank, true);
 			const bool compares = rank == kEqual || rank == kLess;
@@ -631,10 +610,8 @@ private:
 			}
 			const std::string member = name();
 			const bool own = value.type == m_block && m_members.contains(member);
-			if (!own && member.find_first_not_of("xyzw") < member.size() && member.find_first_not_of("rgba") < member.size())
-			{
-				refuse("." + member, "components x, y, z, w or r, g, b, a");
-			}
+			refuseIf(!own && member.find_first_not_of("xyzw") < member.size() && member.find_first_not_of("rgba") < member.size(),
+					 "." + member, "components x, y, z, w or r, g, b, a");
 			value = {operand(value, kUnary, false) + "." + safe(member),
 					 own ? m_members[member] : vectorOf(scalarOf(value.type), static_cast<int>(member.size()))};
 		}
@@ -661,10 +638,7 @@ private:
 			return {word, number.empty() ? "bool" : number};
 		}
 		const auto found = m_types.find(word);
-		if (found == m_types.end())
-		{
-			refuse(word, "a value");
-		}
+		refuseIf(found == m_types.end(), word, "a value");
 		return {safe(word), found->second};
 	}
 
@@ -719,8 +693,9 @@ private:
 		{
 			return {"i32(countOneBits(" + all + "))", "i32"};
 		}
-		refuse(word + "(" + all + ")", "a function of the module, or one of" + std::string(kFunctions) +
-										   "sin cos dot length distance bitCount texelFetch, with arguments of its types");
+		refuseGlsl(m_where, "'" + word + "(" + all + ")'",
+				   "a function of the module, or one of" + std::string(kFunctions) +
+					   "sin cos dot length distance bitCount texelFetch, with arguments of its types");
 	}
 
 	std::vector<WgslToken> m_tokens;

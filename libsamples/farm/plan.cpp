@@ -28,11 +28,6 @@ namespace
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-[[noreturn]] void refusePlan(const std::string& message)
-{
-	throw Error(ExitCode::usage, message);
-}
-
 // The command that writes each file.
 std::map<std::string, std::size_t> writersOf(const std::vector<PlanCommand>& commands)
 {
@@ -40,18 +35,13 @@ std::map<std::string, std::size_t> writersOf(const std::vector<PlanCommand>& com
 	std::set<std::string> names;
 	for (std::size_t i = 0; i < commands.size(); ++i)
 	{
-		if (!names.insert(commands[i].name).second)
-		{
-			refusePlan(commands[i].name + ": found two jobs of that name, expected a name for each");
-		}
+		refuseIf(!names.insert(commands[i].name).second,
+				 commands[i].name + ": found two jobs of that name, expected a name for each");
 		for (const std::string& output : commands[i].outputs)
 		{
 			const auto [other, is_new] = writers.try_emplace(plainPath(output), i);
-			if (!is_new)
-			{
-				refusePlan(output + ": found that " + commands[other->second].name + " and " + commands[i].name +
-						   " write it, expected another file for each");
-			}
+			refuseIf(!is_new, output + ": found that " + commands[other->second].name + " and " + commands[i].name +
+								  " write it, expected another file for each");
 		}
 	}
 	return writers;
@@ -112,8 +102,9 @@ public:
 			if (rest == before)
 			{
 				const auto first = static_cast<std::size_t>(std::find(added.begin(), added.end(), 0) - added.begin());
-				refusePlan(m_commands[first].name +
-						   ": found that it waits for itself by way of others, expected commands in an order");
+				throw Error(ExitCode::usage,
+							m_commands[first].name +
+								": found that it waits for itself by way of others, expected commands in an order");
 			}
 		}
 		return std::move(m_plan);
@@ -299,10 +290,8 @@ void addValues(Values& values, const JsonValue& holder)
 	object.requireObject();
 	for (const auto& item : object.value->items())
 	{
-		if (item.key() == "level" || item.key() == "name" || item.key() == "here")
-		{
-			object.at(item.key()).fail("a value of that name", "another: {" + item.key() + "} has a meaning of its own");
-		}
+		failIf(item.key() == "level" || item.key() == "name" || item.key() == "here", object.at(item.key()), "a value of that name",
+			   "another: {" + item.key() + "} has a meaning of its own");
 		values[item.key()] = object.at(item.key()).string();
 	}
 }
@@ -321,10 +310,8 @@ std::string filled(const JsonValue& word, const Values& values)
 		}
 		const std::size_t end = std::min(text.find('}', at), text.size());
 		const auto value = values.find(text.substr(at + 1, end - at - 1));
-		if (end == text.size() || value == values.end())
-		{
-			word.fail("'" + text.substr(at, end + 1 - at) + "'", "{level}, {name}, {here} or a name of \"values\" in braces");
-		}
+		failIf(end == text.size() || value == values.end(), word, "'" + text.substr(at, end + 1 - at) + "'",
+			   "{level}, {name}, {here} or a name of \"values\" in braces");
 		result += value->second;
 		at = end + 1;
 	}
@@ -358,10 +345,8 @@ std::vector<std::string> stepsOf(const JsonValue& level, const std::vector<std::
 	const std::vector<std::string> names = level.texts("steps");
 	for (std::size_t i = 0; i < names.size(); ++i)
 	{
-		if (std::find(all.begin(), all.end(), names[i]) == all.end())
-		{
-			level.at("steps").at(i).fail("'" + names[i] + "'", "the name of a step");
-		}
+		failIf(std::find(all.begin(), all.end(), names[i]) == all.end(), level.at("steps").at(i), "'" + names[i] + "'",
+			   "the name of a step");
 	}
 	return names;
 }
@@ -452,10 +437,8 @@ Plan planOf(std::vector<PlanCommand> commands, const Plan& plan, const std::stri
 {
 	const std::size_t jobs =
 		sumOver(commands, [](const PlanCommand& command) { return static_cast<std::size_t>(command.shares) + 1; });
-	if (jobs > kMaxJobs)
-	{
-		refusePlan("jobs: found about " + std::to_string(jobs) + ", expected at most " + std::to_string(kMaxJobs) + " in a plan");
-	}
+	refuseIf(jobs > kMaxJobs,
+			 "jobs: found about " + std::to_string(jobs) + ", expected at most " + std::to_string(kMaxJobs) + " in a plan");
 	return Builder(commands, plan, folder).plan();
 }
 
@@ -482,10 +465,7 @@ Plan readPlan(const std::string& text, const std::string& path)
 {
 	const nlohmann::json json = parseJson(text, path);
 	const JsonValue root{&json, &path, ""};
-	if (root.at("schema").string() != "nook.plan/2")
-	{
-		root.at("schema").expected("nook.plan/2");
-	}
+	root.at("schema").require(root.at("schema").string() == "nook.plan/2", "nook.plan/2");
 	Plan plan;
 	plan.version = root.at("version").string();
 	plan.title = root.at("title").string();
@@ -495,10 +475,7 @@ Plan readPlan(const std::string& text, const std::string& path)
 		PlanJob job{item.at("name").string(), {}, item.texts("outputs"), {}, item.texts("identity"), std::nullopt};
 		if (const JsonValue share = item.at("share"); !share.value->is_null())
 		{
-			if (share.arraySize() != 2)
-			{
-				share.expected("[K, N]");
-			}
+			share.require(share.arraySize() == 2, "[K, N]");
 			job.share = WorkShare{static_cast<int>(share.at(0).integer(1, kMaxPlanShares)),
 								  static_cast<int>(share.at(1).integer(1, kMaxPlanShares))};
 		}
@@ -611,10 +588,7 @@ std::vector<ListedCommand> readLevelList(const std::string& text, const std::str
 	const nlohmann::json json = parseJson(text, path);
 	const JsonValue root{&json, &path, ""};
 	root.allowOnly({"schema", "values", "steps", "levels"});
-	if (root.at("schema").string() != "nook.levels/1")
-	{
-		root.at("schema").expected("nook.levels/1");
-	}
+	root.at("schema").require(root.at("schema").string() == "nook.levels/1", "nook.levels/1");
 	const JsonValue steps = root.at("steps");
 	const JsonValue levels = root.at("levels");
 	const std::vector<std::string> all = steps.elements([](const JsonValue& step) { return step.at("name").string(); });
@@ -639,10 +613,7 @@ std::vector<ListedCommand> readLevelList(const std::string& text, const std::str
 			}
 		}
 	}
-	if (commands.empty())
-	{
-		root.fail("nothing to do", "at least one level and one step");
-	}
+	failIf(commands.empty(), root, "nothing to do", "at least one level and one step");
 	return commands;
 }
 

@@ -28,11 +28,8 @@ std::string stemOf(const EmitContext& context, const std::string& derived)
 	{
 		return "nook_" + derived;
 	}
-	if (!isIdentifier(context.name))
-	{
-		throw Error(ExitCode::usage,
-					"name: found " + jsonText(context.name) + ", expected letters, digits and single underscores, a letter first");
-	}
+	refuseIf(!isIdentifier(context.name),
+			 "name: found " + jsonText(context.name) + ", expected letters, digits and single underscores, a letter first");
 	return context.name;
 }
 

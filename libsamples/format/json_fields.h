@@ -30,10 +30,7 @@ Pattern readSamples(const JsonValue& object, Domain domain, bool weights_given);
 template <class Enum> Enum enumOf(const JsonValue& value)
 {
 	const std::optional<Enum> found = valueNamed<Enum>(value.string());
-	if (!found.has_value())
-	{
-		value.expected("one of " + joinedText(namesOf<Enum>(), ", "));
-	}
+	value.require(found.has_value(), "one of " + joinedText(namesOf<Enum>(), ", "));
 	return *found;
 }
 
@@ -46,10 +43,7 @@ template <class Measures> Measures readMeasures(const JsonValue& object)
 	{
 		const JsonValue field = object.at(item.key());
 		const double value = field.value->is_null() ? std::numeric_limits<double>::infinity() : field.number();
-		if (!setMeasure(measures, item.key(), value))
-		{
-			field.fail("an unknown measure", "one of those that nook writes");
-		}
+		failIf(!setMeasure(measures, item.key(), value), field, "an unknown measure", "one of those that nook writes");
 	}
 	for (const Measure& measure : measuresOf(Measures{}))
 	{

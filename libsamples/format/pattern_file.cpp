@@ -229,11 +229,8 @@ void checkProgressive(const std::variant<PatternFile, TileFile>& input, const st
 		progressive = (tile.recipe && tile.recipe->progressive) ||
 					  (!tile.tile.transforms.empty() && tile.base_command.find("--order progressive") != std::string::npos);
 	}
-	if (!progressive)
-	{
-		refuseInput(path, "samples in any order",
-					"for bands a pattern in progressive order, a tile that turns it, or a progressive tile");
-	}
+	refuseInputIf(!progressive, path, "samples in any order",
+				  "for bands a pattern in progressive order, a tile that turns it, or a progressive tile");
 }
 
 } // namespace nook

@@ -52,22 +52,15 @@ Recipe readRecipe(const JsonValue& object, const Pattern& pattern)
 	recipe.method = enumOf<Method>(object.at("method"));
 	recipe.minimise = enumOf<Minimise>(object.at("minimise"));
 	recipe.weights = enumOf<WeightRule>(object.at("weights"));
-	if (object.at("voronoi").string() != "exact")
-	{
-		object.at("voronoi").expected("\"exact\""); // earlier versions also had cells of a grid
-	}
+	// Earlier versions also had cells of a grid.
+	object.at("voronoi").require(object.at("voronoi").string() == "exact", "\"exact\"");
 	recipe.order = enumOf<Order>(object.at("order"));
 	recipe.starts = static_cast<int>(object.at("starts").integer(0, 100000));
 	recipe.seed = static_cast<uint32_t>(object.at("seed").integer(0, UINT32_MAX));
 	recipe.exponent = object.at("exponent").number();
-	if (recipe.domain != pattern.domain)
-	{
-		object.at("domain").expected(jsonText(nameOf(pattern.domain)) + " as in the pattern");
-	}
-	if (static_cast<std::size_t>(recipe.count) != pattern.count())
-	{
-		object.at("count").expected(std::to_string(pattern.count()) + " as in the pattern");
-	}
+	object.at("domain").require(recipe.domain == pattern.domain, jsonText(nameOf(pattern.domain)) + " as in the pattern");
+	object.at("count").require(static_cast<std::size_t>(recipe.count) == pattern.count(),
+							   std::to_string(pattern.count()) + " as in the pattern");
 	try
 	{
 		checkRecipe(recipe);
@@ -124,10 +117,7 @@ glm::dvec3 readPoint(const JsonValue& point, Domain domain)
 
 std::vector<double> readNumbers(const JsonValue& list, std::size_t count)
 {
-	if (list.arraySize() != count)
-	{
-		list.expected("an array of " + std::to_string(count) + ", one a point");
-	}
+	list.require(list.arraySize() == count, "an array of " + std::to_string(count) + ", one a point");
 	return listOf(count, [&list](std::size_t i) { return list.at(i).number(); });
 }
 
@@ -147,9 +137,9 @@ struct Sheet
 	std::optional<Domain> domain; // from a comment
 };
 
-[[noreturn]] void fail(const std::string& path, std::size_t line, const std::string& found, const std::string& expected)
+std::string rowText(const std::string& path, std::size_t line)
 {
-	refuseInput(path + ": row " + std::to_string(line), found, expected);
+	return path + ": row " + std::to_string(line);
 }
 
 std::string_view trimmed(std::string_view text)
@@ -202,10 +192,8 @@ void readComment(Sheet& sheet, std::string_view comment, std::size_t line)
 	}
 	const std::string_view name = trimmed(comment.substr(7));
 	sheet.domain = valueNamed<Domain>(name);
-	if (!sheet.domain.has_value() || sheet.domain == Domain::slice)
-	{
-		fail(sheet.path, line, "the domain " + inQuotes(name), "one of disk, ball, sphere, hemisphere");
-	}
+	refuseInputIf(!sheet.domain.has_value() || sheet.domain == Domain::slice, rowText(sheet.path, line),
+				  "the domain " + inQuotes(name), "one of disk, ball, sphere, hemisphere");
 }
 
 Sheet readSheet(std::string_view text, const std::string& path)
@@ -240,24 +228,18 @@ Sheet readSheet(std::string_view text, const std::string& path)
 				const std::string& name = sheet.header[i];
 				const std::array<std::string_view, 5> known{"x", "y", "z", "half_length", "weight"};
 				const auto before = sheet.header.begin() + static_cast<std::ptrdiff_t>(i);
-				if (std::find(known.begin(), known.end(), name) == known.end() ||
-					std::find(sheet.header.begin(), before, name) != before)
-				{
-					fail(path, line, "the column " + inQuotes(name), "a header of x, y, z, half_length, weight, each once");
-				}
+				refuseInputIf(std::find(known.begin(), known.end(), name) == known.end() ||
+								  std::find(sheet.header.begin(), before, name) != before,
+							  rowText(path, line), "the column " + inQuotes(name),
+							  "a header of x, y, z, half_length, weight, each once");
 			}
 			continue;
 		}
-		if (sheet.rows.size() == static_cast<std::size_t>(kMaxCount))
-		{
-			fail(path, line, "more samples", "at most " + std::to_string(kMaxCount));
-		}
+		refuseInputIf(sheet.rows.size() == static_cast<std::size_t>(kMaxCount), rowText(path, line), "more samples",
+					  "at most " + std::to_string(kMaxCount));
 		sheet.rows.push_back({line, std::move(cells)});
 	}
-	if (sheet.rows.empty())
-	{
-		refuseInput(path, "no samples", "rows of x,y or x,y,z and perhaps weight");
-	}
+	refuseInputIf(sheet.rows.empty(), path, "no samples", "rows of x,y or x,y,z and perhaps weight");
 	return sheet;
 }
 
@@ -278,8 +260,8 @@ std::vector<std::string> guessedHeader(const Sheet& sheet, std::optional<Domain>
 		[[fallthrough]];
 	default: break;
 	}
-	fail(sheet.path, row.line, std::to_string(row.cells.size()) + " columns and no header",
-		 disk ? "x,y or x,y,weight" : "x,y or x,y,z or x,y,z,weight");
+	refuseInput(rowText(sheet.path, row.line), std::to_string(row.cells.size()) + " columns and no header",
+				disk ? "x,y or x,y,weight" : "x,y or x,y,z or x,y,z,weight");
 }
 
 std::optional<std::size_t> columnOf(const std::vector<std::string>& header, std::string_view name)
@@ -290,18 +272,14 @@ std::optional<std::size_t> columnOf(const std::vector<std::string>& header, std:
 
 std::vector<double> numbersOf(const Sheet& sheet, const Row& row, std::size_t columns)
 {
-	if (row.cells.size() != columns)
-	{
-		fail(sheet.path, row.line, std::to_string(row.cells.size()) + " columns", std::to_string(columns));
-	}
+	refuseInputIf(row.cells.size() != columns, rowText(sheet.path, row.line), std::to_string(row.cells.size()) + " columns",
+				  std::to_string(columns));
 	std::vector<double> numbers;
 	for (const std::string& cell : row.cells)
 	{
 		const std::optional<double> number = numberIn(cell);
-		if (!number.has_value() || !std::isfinite(*number))
-		{
-			fail(sheet.path, row.line, inQuotes(cell), "a finite number");
-		}
+		refuseInputIf(!number.has_value() || !std::isfinite(*number), rowText(sheet.path, row.line), inQuotes(cell),
+					  "a finite number");
 		numbers.push_back(*number);
 	}
 	return numbers;
@@ -317,12 +295,10 @@ Domain domainOf(const Sheet& sheet, std::optional<Domain> asked, const std::vect
 	const std::optional<Domain> said = asked.has_value() ? asked : sheet.domain;
 	const Domain domain = said.value_or(has_z ? Domain::ball : Domain::disk);
 	const bool disk = domain == Domain::disk;
-	if (!columnOf(header, "x").has_value() || !columnOf(header, "y").has_value() || has_z == disk ||
-		(columnOf(header, "half_length").has_value() && !disk))
-	{
-		refuseInput(sheet.path + ": columns", joinedText(header, ","),
-					(disk ? "x,y" : "x,y,z") + (" and perhaps weight for the domain " + std::string(nameOf(domain))));
-	}
+	refuseInputIf(!columnOf(header, "x").has_value() || !columnOf(header, "y").has_value() || has_z == disk ||
+					  (columnOf(header, "half_length").has_value() && !disk),
+				  sheet.path + ": columns", joinedText(header, ","),
+				  (disk ? "x,y" : "x,y,z") + (" and perhaps weight for the domain " + std::string(nameOf(domain))));
 	return domain;
 }
 
@@ -353,17 +329,12 @@ PatternFile parsePatternJson(const std::string& text, const std::string& path)
 					"points", "weights", "powers"});
 	PatternFile file;
 	const Domain domain = enumOf<Domain>(root.at("domain"));
-	if (domain == Domain::slice)
-	{
-		root.at("domain").expected("that of a pattern; slices come in tiles");
-	}
+	root.at("domain").require(domain != Domain::slice, "that of a pattern; slices come in tiles");
 	if (ours || root.has("count"))
 	{
 		const auto count = static_cast<std::size_t>(root.at("count").integer(1, kMaxCount));
-		if (root.at("points").arraySize() != count)
-		{
-			root.at("points").expected("an array of " + std::to_string(count) + ", as count says");
-		}
+		root.at("points").require(root.at("points").arraySize() == count,
+								  "an array of " + std::to_string(count) + ", as count says");
 	}
 	file.weights_given = ours || root.has("weights");
 	file.pattern = readSamples(root, domain, file.weights_given);
@@ -445,10 +416,7 @@ void checkWeights(std::vector<double>& weights, const std::string& where, const 
 		sum += weights[i];
 		weights[i] = roundToFloat(weights[i]);
 	}
-	if (!(std::fabs(sum - 1.0) <= kWeightSum))
-	{
-		refuseInput(where, "the sum " + roundedText(sum, 7), "the sum 1 (within 1e-4)");
-	}
+	refuseInputIf(!(std::fabs(sum - 1.0) <= kWeightSum), where, "the sum " + roundedText(sum, 7), "the sum 1 (within 1e-4)");
 }
 
 std::string jsonHead(const char* schema, const EmitContext& context)
@@ -478,10 +446,7 @@ std::string samplesJson(const Pattern& pattern, const std::string& indent)
 void requireSchema(const JsonValue& root, const char* schema)
 {
 	root.requireObject();
-	if (root.at("schema").string() != schema)
-	{
-		root.at("schema").expected(jsonText(schema));
-	}
+	root.at("schema").require(root.at("schema").string() == schema, jsonText(schema));
 }
 
 void readHead(const JsonValue& root, std::string& command, std::string& version)
@@ -508,10 +473,8 @@ Pattern readSamples(const JsonValue& object, Domain domain, bool weights_given)
 	pattern.domain = domain;
 	const JsonValue points = object.at("points");
 	const std::size_t count = points.arraySize();
-	if (count < 1 || count > static_cast<std::size_t>(kMaxCount))
-	{
-		points.expected("an array of 1 to " + std::to_string(kMaxCount) + " points");
-	}
+	points.require(!(count < 1 || count > static_cast<std::size_t>(kMaxCount)),
+				   "an array of 1 to " + std::to_string(kMaxCount) + " points");
 	pattern.points = listOf(count, [&](std::size_t i) { return readPoint(points.at(i), domain); });
 	if (weights_given)
 	{
@@ -560,7 +523,8 @@ PatternFile parsePatternCsv(const std::string& text, const std::string& path, st
 			const double found = numbers[*half_length];
 			if (!(std::fabs(found * found - expected * expected) <= kHalfLengthError))
 			{
-				fail(path, row.line, "half_length " + roundedText(found, 7), roundedText(expected, 7) + " = sqrt(1 - x^2 - y^2)");
+				refuseInput(rowText(path, row.line), "half_length " + roundedText(found, 7),
+							roundedText(expected, 7) + " = sqrt(1 - x^2 - y^2)");
 			}
 		}
 		if (weight.has_value())

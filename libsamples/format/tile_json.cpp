@@ -62,10 +62,7 @@ TileRecipe readRecipe(const JsonValue& object, const PatternTile& tile)
 	{
 		object.at("frames").expected(std::to_string(tile.frames) + " as in the tile, and moves as there");
 	}
-	if (recipe.size != tile.size)
-	{
-		object.at("size").expected(std::to_string(tile.size) + " as in the tile");
-	}
+	object.at("size").require(recipe.size == tile.size, std::to_string(tile.size) + " as in the tile");
 	try
 	{
 		checkTileRecipe(recipe, tile.domain);
@@ -101,20 +98,15 @@ TileTransform transformOf(const std::array<double, 4>& n, Domain domain)
 
 TileTransform readTransform(const JsonValue& value, Domain domain)
 {
-	if (value.arraySize() != 4)
-	{
-		value.expected("an array of 4 numbers");
-	}
+	value.require(value.arraySize() == 4, "an array of 4 numbers");
 	const TileTransform t =
 		transformOf({value.at(0).number(), value.at(1).number(), value.at(2).number(), value.at(3).number()}, domain);
 	const bool unit = domain == Domain::ball
 						  ? std::fabs(t.axis.x * t.axis.x + t.axis.y * t.axis.y + t.axis.z * t.axis.z - 1.0) <= 1e-5
 						  : std::fabs(t.cos * t.cos + t.sin * t.sin - 1.0) <= 1e-5 && std::fabs(t.handedness) == 1.0;
-	if (!unit || !(t.scale > 0.0))
-	{
-		value.expected(domain == Domain::ball ? "a unit direction and a scale above 0"
-											  : "the cosine and sine of an angle, a scale above 0 and a handedness of 1 or -1");
-	}
+	value.require(!(!unit || !(t.scale > 0.0)),
+				  domain == Domain::ball ? "a unit direction and a scale above 0"
+										 : "the cosine and sine of an angle, a scale above 0 and a handedness of 1 or -1");
 	return t;
 }
 
@@ -138,17 +130,12 @@ void readFrames(const JsonValue& root, PatternTile& tile)
 		return;
 	}
 	const JsonValue moves = root.at("moves");
-	if (moves.arraySize() != static_cast<std::size_t>(tile.frames))
-	{
-		moves.expected("an array of " + std::to_string(tile.frames) + ", one a frame");
-	}
+	moves.require(moves.arraySize() == static_cast<std::size_t>(tile.frames),
+				  "an array of " + std::to_string(tile.frames) + ", one a frame");
 	for (std::size_t f = 0; f < moves.arraySize(); ++f)
 	{
 		const JsonValue move = moves.at(f);
-		if (move.arraySize() != 2)
-		{
-			move.expected("an array of 2 numbers");
-		}
+		move.require(move.arraySize() == 2, "an array of 2 numbers");
 		tile.moves.emplace_back(move.at(0).integer(0, tile.size - 1), move.at(1).integer(0, tile.size - 1));
 	}
 }
@@ -157,29 +144,22 @@ void readVariants(const JsonValue& root, std::size_t count, PatternTile& tile)
 {
 	const auto number = static_cast<std::size_t>(tile.size * tile.size * layersOf(tile));
 	const JsonValue variants = root.at("variants");
-	if (variants.arraySize() != number)
-	{
-		variants.expected("an array of " + std::to_string(number) + ", one a pixel of the window, without moves in each frame");
-	}
+	variants.require(variants.arraySize() == number,
+					 "an array of " + std::to_string(number) + ", one a pixel of the window, without moves in each frame");
 	for (std::size_t i = 0; i < number; ++i)
 	{
 		const JsonValue variant = variants.at(i);
 		variant.allowOnly({"points", "weights", "powers"});
 		tile.variants.push_back(readSamples(variant, tile.domain, true));
-		if (tile.variants.back().count() != count)
-		{
-			variant.at("points").expected("an array of " + std::to_string(count) + ", as count says");
-		}
+		variant.at("points").require(tile.variants.back().count() == count,
+									 "an array of " + std::to_string(count) + ", as count says");
 	}
 	if (!root.has("transforms"))
 	{
 		return;
 	}
 	const JsonValue transforms = root.at("transforms");
-	if (transforms.arraySize() != number)
-	{
-		transforms.expected("an array of " + std::to_string(number) + ", one a variant");
-	}
+	transforms.require(transforms.arraySize() == number, "an array of " + std::to_string(number) + ", one a variant");
 	tile.transforms = listOf(number, [&](std::size_t i) { return readTransform(transforms.at(i), tile.domain); });
 }
 
@@ -188,11 +168,9 @@ double checkedSum(const JsonValue& taps, const std::vector<double>& numbers)
 {
 	const double sum = sumOver(numbers);
 	const double below = sumOver(numbers, [](double tap) { return tap < 0.0 ? -tap : 0.0; });
-	if (!(sum > below) || sum > 1e9)
-	{
-		taps.fail("taps with the sum " + numberText(sum) + ", " + numberText(-below) + " of it negative",
-				  "a sum above what the negative ones take away, at most 1e9");
-	}
+	failIf(!(sum > below) || sum > 1e9, taps,
+		   "taps with the sum " + numberText(sum) + ", " + numberText(-below) + " of it negative",
+		   "a sum above what the negative ones take away, at most 1e9");
 	return sum;
 }
 
@@ -291,10 +269,7 @@ FilterFile parseFilter(const std::string& text, const std::string& path)
 	root.allowOnly({"taps"});
 	const JsonValue rows = root.at("taps");
 	const std::size_t height = rows.arraySize();
-	if (height < 1 || height > kMaxTaps)
-	{
-		rows.expected("an array of 1 to " + std::to_string(kMaxTaps) + " rows");
-	}
+	rows.require(!(height < 1 || height > kMaxTaps), "an array of 1 to " + std::to_string(kMaxTaps) + " rows");
 	std::vector<double> taps;
 	std::size_t width = 0;
 	for (std::size_t y = 0; y < height; ++y)
@@ -302,10 +277,8 @@ FilterFile parseFilter(const std::string& text, const std::string& path)
 		const JsonValue row = rows.at(y);
 		const std::size_t found = row.arraySize();
 		width = y == 0 ? found : width;
-		if (found < 1 || found > kMaxTaps || found != width)
-		{
-			row.expected("an array of " + (y == 0 ? "1 to " + std::to_string(kMaxTaps) : std::to_string(width)) + " numbers");
-		}
+		row.require(!(found < 1 || found > kMaxTaps || found != width),
+					"an array of " + (y == 0 ? "1 to " + std::to_string(kMaxTaps) : std::to_string(width)) + " numbers");
 		for (std::size_t x = 0; x < width; ++x)
 		{
 			taps.push_back(row.at(x).number());
@@ -331,17 +304,12 @@ TileFilter readFilterFields(const JsonValue& object)
 	const auto width = static_cast<std::size_t>(object.at("width").integer(1, kMaxTaps));
 	const JsonValue taps = object.at("taps");
 	const std::size_t count = taps.arraySize();
-	if (count < 1 || count % width != 0 || count / width > kMaxTaps)
-	{
-		taps.expected("rows of " + std::to_string(width) + " numbers, at most " + std::to_string(kMaxTaps));
-	}
+	taps.require(!(count < 1 || count % width != 0 || count / width > kMaxTaps),
+				 "rows of " + std::to_string(width) + " numbers, at most " + std::to_string(kMaxTaps));
 	std::vector<double> numbers = listOf(count, [&taps](std::size_t i) { return taps.at(i).number(); });
 	checkedSum(taps, numbers);
 	TileFilter filter{object.at("name").string(), object.at("share").number(), static_cast<int>(width), std::move(numbers)};
-	if (!(filter.share > 0.0 && filter.share <= 1e6))
-	{
-		object.at("share").expected("a number above 0, at most 1e6");
-	}
+	object.at("share").require(filter.share > 0.0 && filter.share <= 1e6, "a number above 0, at most 1e6");
 	return filter;
 }
 

@@ -36,10 +36,7 @@ Choice chosen(const Image& image, const std::string& path, const std::string& wa
 	if (!wanted.empty())
 	{
 		const int index = image.channel(wanted);
-		if (index < 0)
-		{
-			refuseInput(path + ": channels", joinedText(image.channels, ", "), wanted + " among them");
-		}
+		refuseInputIf(index < 0, path + ": channels", joinedText(image.channels, ", "), wanted + " among them");
 		return {index, wanted};
 	}
 	if (const int index = image.channel("visibility"); index >= 0)
@@ -167,10 +164,7 @@ BentAngles anglesBetween(const BentImage& test, const BentImage& reference, std:
 		}
 		angles.push_back(angle);
 	}
-	if (angles.empty())
-	{
-		refuseInput(test.path, "no direction where " + reference.path + " has one", "some");
-	}
+	refuseInputIf(angles.empty(), test.path, "no direction where " + reference.path + " has one", "some");
 	result.pixels = angles.size();
 	const auto count = static_cast<double>(angles.size());
 	result.mean_deg = sum / count;

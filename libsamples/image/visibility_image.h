@@ -44,10 +44,8 @@ template <class Picture> void checkSameSize(const Picture& test, const Picture& 
 	{
 		return std::to_string(picture.width_px) + "x" + std::to_string(picture.height_px) + " pixels";
 	};
-	if (test.width_px != reference.width_px || test.height_px != reference.height_px)
-	{
-		refuseInput(test.path + ": size", sizeText(test), sizeText(reference) + " as " + reference.path);
-	}
+	refuseInputIf(test.width_px != reference.width_px || test.height_px != reference.height_px, test.path + ": size",
+				  sizeText(test), sizeText(reference) + " as " + reference.path);
 }
 
 // Root mean square of the standard error over the counted pixels; none without that channel.

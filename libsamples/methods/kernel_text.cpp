@@ -87,10 +87,8 @@ bool decided(const std::string& condition, const std::map<std::string, std::stri
 	static const std::regex number(R"(-?\d+)");
 	std::smatch match;
 	const bool known = std::regex_match(condition, match, form) && constants.contains(match[2]);
-	if (!known || !std::regex_match(constants.at(match[2]), number))
-	{
-		throw Error(ExitCode::runtime, "kernels: found '#if " + condition + "', expected a constant that is known");
-	}
+	refuseIf(!known || !std::regex_match(constants.at(match[2]), number),
+			 "kernels: found '#if " + condition + "', expected a constant that is known", ExitCode::runtime);
 	const int left = std::stoi(constants.at(match[2]));
 	const int right = match[4].matched ? std::stoi(match[4]) : 0;
 	const std::string sign = match[3];
@@ -129,10 +127,8 @@ std::string nameIn(const std::string& line)
 {
 	static const std::regex head(R"(^(?:#define|\w+) (\w+)[( ].*$)");
 	std::smatch match;
-	if (!std::regex_match(line, match, head))
-	{
-		throw Error(ExitCode::runtime, "kernels: found '" + line + "', expected a comment, a macro or a function");
-	}
+	refuseIf(!std::regex_match(line, match, head), "kernels: found '" + line + "', expected a comment, a macro or a function",
+			 ExitCode::runtime);
 	return match[1];
 }
 
@@ -246,10 +242,8 @@ std::string FunctionWriter::add(const std::string& entry, const std::map<std::st
 {
 	std::map<std::string, std::string> texts; // of the functions reached
 	reach(entry, constants, texts);
-	if (texts.empty())
-	{
-		throw Error(ExitCode::runtime, std::string("kernels: found no ") + entry + ", expected one in methods/kernels/*.glsl");
-	}
+	refuseIf(texts.empty(), std::string("kernels: found no ") + entry + ", expected one in methods/kernels/*.glsl",
+			 ExitCode::runtime);
 	std::map<std::string, std::string> names{{"nookSample", entry + "Sample"}, {"nookVariant", entry + "Variant"}};
 	std::string result;
 	for (const KernelFunction& function : m_kernels.functions)

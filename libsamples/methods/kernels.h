@@ -94,11 +94,8 @@ public:
 	{
 		const PicturePlane& plane = levels[static_cast<std::size_t>(level)];
 		const std::size_t i = plane.index(texel.x, texel.y);
-		if (plane.channels == 1)
-		{
-			return vec4(plane.values[i], 0.0F, 0.0F, 1.0F);
-		}
-		return vec4(plane.values[i], plane.values[i + 1], plane.values[i + 2], plane.values[i + 3]);
+		return plane.channels == 1 ? vec4(plane.values[i], 0.0F, 0.0F, 1.0F)
+								   : vec4(plane.values[i], plane.values[i + 1], plane.values[i + 2], plane.values[i + 3]);
 	}
 	uvec4 nookTable(ivec2 texel, int table) const
 	{

@@ -113,11 +113,6 @@ std::vector<CandidateAxes> axesOfAlchemy(GridSize size)
 	return {paper, own, fittedAxes(size, upTo<int>(size, {4, 12}, {4, 6, 9, 12}, {3, 4, 6, 9, 12, 16}))};
 }
 
-int alchemyLevels(const ShadeSettings& settings)
-{
-	return settings.depth_levels;
-}
-
 // Slices.
 
 CandidateAxes slices(GridSize size, const std::vector<int>& counts, const std::vector<int>& steps)
@@ -182,11 +177,6 @@ ShadeSamples sliceSamples(const ShadeSettings& settings)
 	return {4, settings.slices.count, std::vector<glm::vec4>(16 * count, glm::vec4(0.0F))};
 }
 
-void setSlices(ShadeSettings& settings, int count)
-{
-	settings.slices.count = count;
-}
-
 int setBestSlices(ShadeSettings& settings)
 {
 	settings.slices.count = 16;
@@ -198,11 +188,6 @@ void fillSlices(ShadeBlock& block, const ShadeSettings& settings)
 {
 	block.steps = settings.slices.steps;
 	block.bent = settings.slices.bent ? 1 : 0;
-}
-
-int sliceDepths(const ShadeSettings& settings)
-{
-	return 2 * settings.slices.steps;
 }
 
 } // namespace
@@ -268,7 +253,7 @@ std::vector<MethodRow> alchemyRows()
 		 .domain = Domain::hemisphere,
 		 .kernel = {"alchemy", "nookAlchemy", &Kernels::nookAlchemy},
 		 .tile_binding = 5,
-		 .levels = alchemyLevels,
+		 .levels = [](const ShadeSettings& settings) { return settings.depth_levels; },
 		 .samples_view = {"samples", "nookDebugSamplesAlchemy", &Kernels::nookDebugSamplesAlchemy},
 		 .lod_view = {"lod", "nookDebugLodAlchemy", &Kernels::nookDebugLodAlchemy}},
 	};
@@ -286,12 +271,12 @@ std::vector<MethodRow> sliceRows()
 		 .axes = axesOfSlices,
 		 .tile_domain = Domain::slice,
 		 .own_samples = sliceSamples,
-		 .set_count = setSlices,
+		 .set_count = [](ShadeSettings& settings, int count) { settings.slices.count = count; },
 		 .set_best = setBestSlices,
 		 .kernel = {"slices", "nookSlices", &Kernels::nookSlices},
 		 .bent_kernel = {"slices", "nookSlicesBent", &Kernels::nookSlicesBent},
 		 .open_kernel = {"slices", "nookSlicesOpen", &Kernels::nookSlicesOpen},
-		 .sample_depths = sliceDepths,
+		 .sample_depths = [](const ShadeSettings& settings) { return 2 * settings.slices.steps; },
 		 .tile_binding = 12,
 		 .fill = fillSlices,
 		 .samples_view = allSamples()},

@@ -66,11 +66,8 @@ std::string choiceText(std::string_view choice)
 
 std::string samplesText(const MethodRow& method)
 {
-	if (method.kind == MethodKind::volumes)
-	{
-		return "none";
-	}
-	return method.domain ? std::string(nameOf(*method.domain)) : hasNoise(method) ? "its own" : "none";
+	const char* const other = method.kind != MethodKind::volumes && hasNoise(method) ? "its own" : "none";
+	return method.domain ? std::string(nameOf(*method.domain)) : other;
 }
 
 std::string passesText(const MethodRow& method)
@@ -190,11 +187,8 @@ std::string rangeText(const FeatureRow& feature)
 	{
 		return std::string(feature.range);
 	}
-	if (feature.kind != FeatureKind::choice)
-	{
-		return plainNumber(feature.least) + " to " + plainNumber(feature.most);
-	}
-	return joinedText(feature.choices, ", ", choiceText);
+	return feature.kind == FeatureKind::choice ? joinedText(feature.choices, ", ", choiceText)
+											   : plainNumber(feature.least) + " to " + plainNumber(feature.most);
 }
 
 std::string defaultText(const FeatureRow& feature)

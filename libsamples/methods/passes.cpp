@@ -15,88 +15,6 @@ namespace
 
 using shade_kernels::Kernels;
 
-class DebugPlanner
-{
-public:
-	DebugPlanner(ShadePlan& plan, const ShadePass& method, int width_px, int height_px)
-		: m_plan(plan), m_method(method), m_width(width_px), m_height(height_px)
-	{
-	}
-
-	// Covers all pixels.
-	void draw(const ShadeKernel& kernel, const std::vector<ShadeRead>& reads, const ShadeBlock& block)
-	{
-		ShadePass pass;
-		pass.kernel = kernel;
-		pass.reads = reads;
-		pass.block = block;
-		pass.picture = m_plan.addPicture({PictureFormat::scalar, m_width, m_height});
-		m_plan.passes.push_back(pass);
-	}
-	void draw(const ShadeKernel& kernel)
-	{
-		draw(kernel, m_method.reads, m_method.block);
-	}
-
-	// Draws the method once per variant at each pixel.
-	void addNoise(int variants)
-	{
-		const int cell = m_method.block.cell;
-		const int area = m_method.block.window * m_method.block.window;
-		PictureShape shape{PictureFormat::scalar, (m_width + cell - 1) / cell, (m_height + cell - 1) / cell};
-		const std::size_t estimate = m_plan.addPicture(shape);
-		shape.format = PictureFormat::quad;
-		const std::array<std::size_t, 2> sums{m_plan.addPicture(shape), m_plan.addPicture(shape)};
-		for (int i = 0; i < variants; ++i)
-		{
-			ShadePass variant = m_method;
-			variant.kernel.name += " " + std::to_string(i + 1);
-			variant.picture = estimate;
-			variant.block.variant = variant.block.variant / area * area + i; // within the frame's own tile
-			m_plan.passes.push_back(variant);
-			ShadePass scatter;
-			scatter.kernel = {"scatter " + std::to_string(i + 1), "nookDebugScatter", &Kernels::nookDebugScatter};
-			scatter.reads = {{ShadeSlot::cells, estimate}, {ShadeSlot::levels, sums[static_cast<std::size_t>(1 - i % 2)]}};
-			scatter.picture = sums[static_cast<std::size_t>(i % 2)];
-			scatter.block = m_method.block;
-			scatter.block.variants = i;
-			m_plan.passes.push_back(scatter);
-		}
-		ShadeBlock block = m_method.block;
-		block.variants = variants;
-		draw({"noise", "nookDebugNoise", &Kernels::nookDebugNoise},
-			 {{ShadeSlot::levels, sums[static_cast<std::size_t>((variants - 1) % 2)]}}, block);
-	}
-
-private:
-	ShadePlan& m_plan;
-	const ShadePass& m_method;
-	int m_width;
-	int m_height;
-};
-
-// Appends the passes of a debug view, in place of those that draw visibility and filter it, after the passes that `method` reads.
-// Requires settings.debug. The size is the picture's, in pixels.
-void addDebugView(ShadePlan& plan, const ShadePass& method, const ShadeSettings& settings, int width_px, int height_px)
-{
-	assert(settings.debug && debugShows(*settings.debug, settings));
-	const MethodRow& row = rowOf(settings.method);
-	DebugPlanner planner(plan, method, width_px, height_px);
-	switch (*settings.debug)
-	{
-	case DebugView::edges: planner.draw({"edges", "nookDebugEdges", &Kernels::nookDebugEdges}); break;
-	case DebugView::lod: planner.draw(row.lod_view); break;
-	case DebugView::layers: planner.draw(row.layers_view); break;
-	case DebugView::samples: planner.draw(row.samples_view); break;
-	case DebugView::noise:
-	{
-		const int side = method.block.window;
-		planner.addNoise(row.noise_variants > 0 ? row.noise_variants : side * side);
-		break;
-	}
-	}
-}
-
 class Planner
 {
 public:
@@ -128,7 +46,7 @@ public:
 		}
 		if (m_settings.debug)
 		{
-			addDebugView(m_plan, method, m_settings, m_width, m_height);
+			addDebugView(method);
 			return m_plan;
 		}
 		if (hasBentNormals(m_settings))
@@ -220,15 +138,10 @@ private:
 		const std::size_t picture = m_plan.addPicture(shape);
 		for (int level = 0; level < shape.levels; ++level)
 		{
-			ShadePass pass;
-			pass.kernel = kernel;
+			ShadePass& pass = m_plan.addPass(kernel, {{ShadeSlot::levels, picture}}, picture, m_block);
 			pass.kernel.name += " " + std::to_string(2 << level); // side of a texel in pixels
-			pass.reads = {{ShadeSlot::levels, picture}};
-			pass.picture = picture;
 			pass.level = level;
-			pass.block = m_block;
 			pass.block.level = level;
-			m_plan.passes.push_back(pass);
 		}
 		return picture;
 	}
@@ -292,6 +205,55 @@ private:
 		method.picture = m_plan.passes.back().picture;
 		method.of_pixel = false; // with its cell's samples
 		m_plan.passes.push_back(method);
+	}
+
+	// Covers all pixels.
+	void drawPixels(const ShadeKernel& kernel, const std::vector<ShadeRead>& reads, const ShadeBlock& block)
+	{
+		const std::size_t picture = m_plan.addPicture({PictureFormat::scalar, m_width, m_height});
+		m_plan.addPass(kernel, reads, picture, block);
+	}
+
+	// A debug view in place of the passes that draw visibility and filter it, after those that `method` reads.
+	void addDebugView(const ShadePass& method)
+	{
+		assert(debugShows(*m_settings.debug, m_settings));
+		const MethodRow& row = rowOf(m_settings.method);
+		const int side = method.block.window;
+		switch (*m_settings.debug)
+		{
+		case DebugView::edges: drawPixels({"edges", "nookDebugEdges", &Kernels::nookDebugEdges}, method.reads, method.block); break;
+		case DebugView::lod: drawPixels(row.lod_view, method.reads, method.block); break;
+		case DebugView::layers: drawPixels(row.layers_view, method.reads, method.block); break;
+		case DebugView::samples: drawPixels(row.samples_view, method.reads, method.block); break;
+		case DebugView::noise: addNoise(method, row.noise_variants > 0 ? row.noise_variants : side * side); break;
+		}
+	}
+
+	// Draws the method once per variant at each pixel.
+	void addNoise(const ShadePass& method, int variants)
+	{
+		const int cell = method.block.cell;
+		const int area = method.block.window * method.block.window;
+		PictureShape shape{PictureFormat::scalar, (m_width + cell - 1) / cell, (m_height + cell - 1) / cell};
+		const std::size_t estimate = m_plan.addPicture(shape);
+		shape.format = PictureFormat::quad;
+		const std::array<std::size_t, 2> sums{m_plan.addPicture(shape), m_plan.addPicture(shape)};
+		ShadeBlock block = method.block;
+		for (int i = 0; i < variants; ++i)
+		{
+			ShadePass& variant = m_plan.passes.emplace_back(method);
+			variant.kernel.name += " " + std::to_string(i + 1);
+			variant.picture = estimate;
+			variant.block.variant = variant.block.variant / area * area + i; // within the frame's own tile
+			block.variants = i;
+			m_plan.addPass({"scatter " + std::to_string(i + 1), "nookDebugScatter", &Kernels::nookDebugScatter},
+						   {{ShadeSlot::cells, estimate}, {ShadeSlot::levels, sums[static_cast<std::size_t>(1 - i % 2)]}},
+						   sums[static_cast<std::size_t>(i % 2)], block);
+		}
+		block.variants = variants;
+		drawPixels({"noise", "nookDebugNoise", &Kernels::nookDebugNoise},
+				   {{ShadeSlot::levels, sums[static_cast<std::size_t>((variants - 1) % 2)]}}, block);
 	}
 
 	const ShadeSettings& m_settings;

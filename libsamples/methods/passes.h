@@ -76,6 +76,16 @@ struct ShadePlan
 		pictures.push_back(shape);
 		return pictures.size() - 1;
 	}
+
+	ShadePass& addPass(const ShadeKernel& kernel, const std::vector<ShadeRead>& reads, std::size_t picture, const ShadeBlock& block)
+	{
+		ShadePass& pass = passes.emplace_back();
+		pass.kernel = kernel;
+		pass.reads = reads;
+		pass.picture = picture;
+		pass.block = block;
+		return pass;
+	}
 };
 
 // True if the last pass outputs bent normals with visibility.

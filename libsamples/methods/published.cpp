@@ -105,11 +105,6 @@ std::vector<CandidateAxes> crytekAxes(GridSize size)
 	return publishedAxes(SampleSource::own, kWindow, upTo<int>(size, {16}, {8, 16, 32}, {8, 16, 32, 64}));
 }
 
-void fillCrytek(ShadeBlock& block, const ShadeSettings& settings)
-{
-	block.crytek_range = narrowOf(settings, "--crytek-range");
-}
-
 std::vector<CandidateAxes> volumetricAxes(GridSize size)
 {
 	return publishedAxes(SampleSource::electro, kWindow, upTo<int>(size, {9}, {4, 9, 16}, {4, 9, 16, 32}));
@@ -332,7 +327,8 @@ std::vector<MethodRow> publishedRows()
 		 .own_pattern = crytekPoints,
 		 .default_count = 16,
 		 .kernel = {"crytek", "nookCrytek", &Kernels::nookCrytek},
-		 .fill = fillCrytek,
+		 .fill = [](ShadeBlock& block, const ShadeSettings& settings)
+		 { block.crytek_range = narrowOf(settings, "--crytek-range"); },
 		 .samples_view = allSamples()},
 		{.name = "volumetric-ao",
 		 .what = "volumetric ambient occlusion in the tangent sphere",

@@ -34,10 +34,7 @@ double valueOf(const JsonValue& json, const FeatureRow& feature)
 	{
 		const std::string name = json.string();
 		const auto found = std::find(feature.choices.begin(), feature.choices.end(), name);
-		if (found == feature.choices.end())
-		{
-			json.expected("one of its choices");
-		}
+		json.require(found != feature.choices.end(), "one of its choices");
 		return static_cast<double>(found - feature.choices.begin());
 	}
 	if (feature.kind == FeatureKind::whole)
@@ -45,10 +42,8 @@ double valueOf(const JsonValue& json, const FeatureRow& feature)
 		return static_cast<double>(json.integer(static_cast<int64_t>(feature.least), static_cast<int64_t>(feature.most)));
 	}
 	const double value = json.number();
-	if (value < feature.least || value > feature.most)
-	{
-		json.fail(numberText(value), "a number from " + numberText(feature.least) + " to " + numberText(feature.most));
-	}
+	failIf(value < feature.least || value > feature.most, json, numberText(value),
+		   "a number from " + numberText(feature.least) + " to " + numberText(feature.most));
 	return value;
 }
 
@@ -57,23 +52,16 @@ MethodRecipe recipeOf(const JsonValue& json)
 	json.allowOnly({"method", "radius", "options", "errors"});
 	const JsonValue name = json.at("method");
 	const MethodRow* const row = methodNamed(name.string());
-	if (row == nullptr || row->kind != MethodKind::screen)
-	{
-		name.expected("a screen-space method");
-	}
+	name.require(!(row == nullptr || row->kind != MethodKind::screen), "a screen-space method");
 	MethodRecipe recipe{row->method, json.at("radius").number(), {}};
-	if (!(recipe.radius >= 1e-3 && recipe.radius <= 1e3))
-	{
-		json.fail("radius", numberText(recipe.radius), "a number from 0.001 to 1000");
-	}
+	failIf(!(recipe.radius >= 1e-3 && recipe.radius <= 1e3), json, "radius", numberText(recipe.radius),
+		   "a number from 0.001 to 1000");
 	const JsonValue options = json.objectNeeded("options");
 	for (const auto& [option, value] : options.value->items())
 	{
 		const FeatureRow* const feature = featureNamed(option);
-		if (feature == nullptr || !takesFeature(*row, *feature))
-		{
-			options.fail(option, "an option", "one of " + std::string(row->name));
-		}
+		failIf(feature == nullptr || !takesFeature(*row, *feature), options, option, "an option",
+			   "one of " + std::string(row->name));
 		recipe.values.push_back({feature, valueOf(options.at(option), *feature)});
 	}
 	return recipe;
@@ -165,10 +153,7 @@ std::vector<MethodRecipe> recipesOf(const std::string& text, const std::string& 
 	const nlohmann::json document = parseJson(text, path);
 	const JsonValue root{&document, &path, {}};
 	root.allowOnly({"format", "nook_version", "command", "fit", "recipes"});
-	if (root.at("format").string() != kRecipesFormat)
-	{
-		root.at("format").expected("'" + std::string(kRecipesFormat) + "'");
-	}
+	root.at("format").require(root.at("format").string() == kRecipesFormat, "'" + std::string(kRecipesFormat) + "'");
 	std::vector<MethodRecipe> recipes;
 	for (const JsonValue& one : root.objects("recipes"))
 	{

@@ -60,15 +60,9 @@ public:
 	}
 
 private:
-	ShadePass& addPass(ShadeKernel kernel, std::vector<ShadeRead> reads, std::size_t picture)
+	ShadePass& addPass(const ShadeKernel& kernel, const std::vector<ShadeRead>& reads, std::size_t picture)
 	{
-		ShadePass pass;
-		pass.kernel = std::move(kernel);
-		pass.reads = std::move(reads);
-		pass.picture = picture;
-		pass.block = m_block;
-		m_plan.passes.push_back(pass);
-		return m_plan.passes.back();
+		return m_plan.addPass(kernel, reads, picture, m_block);
 	}
 
 	std::size_t addRange()
@@ -231,12 +225,6 @@ std::string statVoPassesText(const ShadeSettings& settings)
 				  "    the next pass reads this one as nook_levels\n");
 }
 
-// StatVO uses all pixels instead of samples: its kernel reads no values.
-ShadeSamples noSamples(const ShadeSettings& /*settings*/)
-{
-	return {1, 1, {glm::vec4(0.0F)}};
-}
-
 // "4 adaptive layers, full tables": for notes and summaries.
 std::string layersText(const ShadeSettings& settings)
 {
@@ -244,11 +232,6 @@ std::string layersText(const ShadeSettings& settings)
 	return std::to_string(statvo.layers) + " " + valueText(featureOf("--layering"), settings) +
 		   (statvo.layers == 1 ? " layer, " : " layers, ") + valueText(featureOf("--tables"), settings) + " tables" +
 		   (statvo.quadrants ? ", quadrants" : "");
-}
-
-void setLayers(ShadeSettings& settings, int count)
-{
-	settings.statvo.layers = count;
 }
 
 int setBestLayers(ShadeSettings& settings)
@@ -352,12 +335,6 @@ std::vector<CandidateAxes> axesOfLayers(GridSize size)
 	return all;
 }
 
-// Whatever its layers, the kernel reads the pixel's own depth alone.
-int noDepths(const ShadeSettings& /*settings*/)
-{
-	return 0;
-}
-
 } // namespace
 
 std::vector<MethodRow> statVoRows()
@@ -371,12 +348,16 @@ std::vector<MethodRow> statVoRows()
 		 .options = layerOptions(),
 		 .radius_ratio = kVolumetricRatio,
 		 .axes = axesOfLayers,
-		 .own_samples = noSamples,
-		 .set_count = setLayers,
+		 // It uses all pixels instead of samples: its kernel reads no values.
+		 .own_samples =
+			 [](const ShadeSettings&) {
+				 return ShadeSamples{1, 1, {glm::vec4(0.0F)}};
+			 },
+		 .set_count = [](ShadeSettings& settings, int count) { settings.statvo.layers = count; },
 		 .layers_text = layersText,
 		 .set_best = setBestLayers,
 		 .kernel = {"statvo", "nookStatVo", &Kernels::nookStatVo},
-		 .sample_depths = noDepths,
+		 .sample_depths = [](const ShadeSettings&) { return 0; }, // beside the pixel's own, whatever the layers
 		 .add_passes = addStatVo,
 		 .passes_text = statVoPassesText,
 		 .fill = fillStatVo,

@@ -23,13 +23,13 @@ constexpr double kLimit = 1.0 - 0.5e-6; // greatest radius for an optimiser; a p
 // the points and their opposites together cover the domain.
 glm::dvec3 pointOf(const Layout& layout, const glm::dvec3& u)
 {
-	const SinCos turn = sinCosOf((layout.symmetric() ? kPi : 2.0 * kPi) * u.y);
+	const SinCos turn = sinCosOf((layout.symmetric ? kPi : 2.0 * kPi) * u.y);
 	const auto ring = [&](double r)
 	{
 		return glm::dvec3(r * turn.cos, r * turn.sin, 0.0);
 	};
 	glm::dvec3 p(0.0);
-	switch (layout.domain())
+	switch (layout.domain)
 	{
 	case Domain::disk: // the measure within r is 1 − (1−r²)^{3/2}
 		p = ring(std::sqrt(std::max(0.0, 1.0 - powOf(1.0 - u.x, 2.0 / 3.0))));
@@ -42,14 +42,14 @@ glm::dvec3 pointOf(const Layout& layout, const glm::dvec3& u)
 		const double z = 1.0 - 2.0 * u.x;
 		p = ring(std::sqrt(std::max(0.0, (1.0 - z) * (1.0 + z))));
 		p.z = z;
-		if (layout.domain() == Domain::ball)
+		if (layout.domain == Domain::ball)
 		{
 			p *= u.z > 0.0 ? powOf(u.z, 1.0 / 3.0) : 0.0;
 		}
 		break;
 	}
 	}
-	return placeInDomain(layout.domain(), p);
+	return placeInDomain(layout.domain, p);
 }
 
 glm::dvec3 randomPoint(const Layout& layout, Random& random)
@@ -104,23 +104,22 @@ glm::dvec3 placeInDomain(Domain domain, const glm::dvec3& p)
 }
 
 Layout::Layout(const Recipe& recipe)
-	: m_domain(recipe.domain), m_centre(recipe.centre || (recipe.symmetric && recipe.count % 2 != 0)), m_symmetric(recipe.symmetric)
+	: domain(recipe.domain), has_centre(recipe.centre || (recipe.symmetric && recipe.count % 2 != 0)), symmetric(recipe.symmetric),
+	  free_count((static_cast<std::size_t>(recipe.count) - (has_centre ? 1U : 0U)) / (symmetric ? 2U : 1U))
 {
-	const std::size_t moving = static_cast<std::size_t>(recipe.count) - (m_centre ? 1U : 0U);
-	m_free = m_symmetric ? moving / 2 : moving;
 }
 
 std::vector<glm::dvec3> Layout::expand(std::span<const glm::dvec3> free) const
 {
 	std::vector<glm::dvec3> all;
-	if (m_centre)
+	if (has_centre)
 	{
 		all.emplace_back(0.0);
 	}
 	for (const glm::dvec3& p : free)
 	{
 		all.push_back(p);
-		if (m_symmetric)
+		if (symmetric)
 		{
 			all.push_back(-p);
 		}
@@ -130,13 +129,13 @@ std::vector<glm::dvec3> Layout::expand(std::span<const glm::dvec3> free) const
 
 std::vector<glm::dvec3> Layout::freePoints(std::span<const glm::dvec3> all) const
 {
-	return listOf(m_free, [&](std::size_t k) { return all[firstFree(k)]; });
+	return listOf(free_count, [&](std::size_t k) { return all[firstFree(k)]; });
 }
 
 std::vector<double> Layout::variables(std::span<const glm::dvec3> all) const
 {
 	std::vector<double> result;
-	for (std::size_t k = 0; k < m_free; ++k)
+	for (std::size_t k = 0; k < free_count; ++k)
 	{
 		const glm::dvec3& p = all[firstFree(k)];
 		for (std::size_t a = 0; a < dimension(); ++a)
@@ -149,8 +148,8 @@ std::vector<double> Layout::variables(std::span<const glm::dvec3> all) const
 
 bool Layout::points(std::span<const double> variables, std::vector<glm::dvec3>& all) const
 {
-	std::vector<glm::dvec3> free(m_free);
-	for (std::size_t k = 0; k < m_free; ++k)
+	std::vector<glm::dvec3> free(free_count);
+	for (std::size_t k = 0; k < free_count; ++k)
 	{
 		glm::dvec3 p(0.0);
 		for (std::size_t a = 0; a < dimension(); ++a)
@@ -158,7 +157,7 @@ bool Layout::points(std::span<const double> variables, std::vector<glm::dvec3>& 
 			p[static_cast<int>(a)] = variables[k * dimension() + a];
 		}
 		const double r2 = glm::dot(p, p);
-		if (m_domain == Domain::sphere)
+		if (domain == Domain::sphere)
 		{
 			if (!(r2 > 1e-6 && r2 < 1e6))
 			{
@@ -170,7 +169,7 @@ bool Layout::points(std::span<const double> variables, std::vector<glm::dvec3>& 
 		{
 			return false;
 		}
-		if (m_domain == Domain::hemisphere)
+		if (domain == Domain::hemisphere)
 		{
 			p.z = std::sqrt(1.0 - r2);
 		}
@@ -183,21 +182,21 @@ bool Layout::points(std::span<const double> variables, std::vector<glm::dvec3>& 
 void Layout::pullBack(std::span<const double> variables, std::span<const glm::dvec3> all,
 					  std::span<const glm::dvec3> point_gradient, std::span<double> gradient) const
 {
-	for (std::size_t k = 0; k < m_free; ++k)
+	for (std::size_t k = 0; k < free_count; ++k)
 	{
 		const std::size_t i = firstFree(k);
 		const glm::dvec3& p = all[i];
 		glm::dvec3 g = point_gradient[i];
-		if (m_symmetric)
+		if (symmetric)
 		{
 			g -= point_gradient[i + 1];
 		}
-		if (m_domain == Domain::sphere)
+		if (domain == Domain::sphere)
 		{
 			glm::dvec3 u(variables[3 * k], variables[3 * k + 1], variables[3 * k + 2]);
 			g = (g - glm::dot(g, p) * p) / glm::length(u);
 		}
-		else if (m_domain == Domain::hemisphere)
+		else if (domain == Domain::hemisphere)
 		{
 			g -= (g.z / p.z) * p; // ∂z/∂x = −x/z
 		}
@@ -210,11 +209,11 @@ void Layout::pullBack(std::span<const double> variables, std::span<const glm::dv
 
 void Layout::symmetrise(std::span<double> values) const
 {
-	if (!m_symmetric)
+	if (!symmetric)
 	{
 		return;
 	}
-	for (std::size_t k = 0; k < m_free; ++k)
+	for (std::size_t k = 0; k < free_count; ++k)
 	{
 		const std::size_t i = firstFree(k);
 		values[i] = 0.5 * (values[i] + values[i + 1]);
@@ -224,18 +223,18 @@ void Layout::symmetrise(std::span<double> values) const
 
 std::vector<glm::dvec3> randomPoints(const Layout& layout, Random& random)
 {
-	return layout.expand(listOf(layout.freeCount(), [&](std::size_t) { return randomPoint(layout, random); }));
+	return layout.expand(listOf(layout.free_count, [&](std::size_t) { return randomPoint(layout, random); }));
 }
 
 std::vector<glm::dvec3> poissonPoints(const Layout& layout, Random& random)
 {
-	const bool planar = isPlanar(layout.domain());
-	const std::size_t count = layout.expand(std::vector<glm::dvec3>(layout.freeCount())).size();
+	const bool planar = isPlanar(layout.domain);
+	const std::size_t count = layout.expand(std::vector<glm::dvec3>(layout.free_count)).size();
 	// About the spacing of a dense packing of that many balls in the domain.
 	const double share = 1.0 / static_cast<double>(count);
-	double distance = layout.domain() == Domain::ball ? 1.8 * powOf(share, 1.0 / 3.0)
-					  : planar                        ? 1.9 * std::sqrt(share)
-													  : 3.6 * std::sqrt(share);
+	double distance = layout.domain == Domain::ball ? 1.8 * powOf(share, 1.0 / 3.0)
+					  : planar                      ? 1.9 * std::sqrt(share)
+													: 3.6 * std::sqrt(share);
 	const auto flat = [&](glm::dvec3 p)
 	{
 		p.z = planar ? 0.0 : p.z;
@@ -244,10 +243,10 @@ std::vector<glm::dvec3> poissonPoints(const Layout& layout, Random& random)
 	std::vector<glm::dvec3> free;
 	std::vector<glm::dvec3> all = layout.expand(free);
 	int misses = 0;
-	while (free.size() < layout.freeCount())
+	while (free.size() < layout.free_count)
 	{
 		const glm::dvec3 p = randomPoint(layout, random);
-		bool clear = !layout.symmetric() || 2.0 * glm::length(p) >= distance;
+		bool clear = !layout.symmetric || 2.0 * glm::length(p) >= distance;
 		for (std::size_t i = 0; clear && i < all.size(); ++i)
 		{
 			clear = glm::distance(flat(p), flat(all[i])) >= distance;
@@ -264,7 +263,7 @@ std::vector<glm::dvec3> poissonPoints(const Layout& layout, Random& random)
 		}
 		free.push_back(p);
 		all.push_back(p);
-		if (layout.symmetric())
+		if (layout.symmetric)
 		{
 			all.push_back(-p);
 		}
@@ -279,12 +278,12 @@ std::vector<glm::dvec3> haltonPoints(const Layout& layout)
 		const auto k = static_cast<unsigned>(i + 1);
 		return pointOf(layout, {radicalInverse(k, 2), radicalInverse(k, 3), radicalInverse(k, 5)});
 	};
-	return layout.expand(listOf(layout.freeCount(), freePoint));
+	return layout.expand(listOf(layout.free_count, freePoint));
 }
 
 std::vector<glm::dvec3> vogelPoints(const Layout& layout)
 {
-	const auto count = static_cast<double>(layout.freeCount());
+	const auto count = static_cast<double>(layout.free_count);
 	const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
 	const auto freePoint = [&](std::size_t k)
 	{
@@ -292,10 +291,10 @@ std::vector<glm::dvec3> vogelPoints(const Layout& layout)
 		const double radial = fraction((index + 0.5) * 0.5 * (1.0 + golden)); // only the ball uses it
 		// Vogel's spiral is uniform over the disk, r² = area; the weights account for the lines' measure.
 		const double area = (index + 0.5) / count;
-		const double share = layout.domain() == Domain::disk ? 1.0 - (1.0 - area) * std::sqrt(1.0 - area) : area;
+		const double share = layout.domain == Domain::disk ? 1.0 - (1.0 - area) * std::sqrt(1.0 - area) : area;
 		return pointOf(layout, {share, fraction(index * golden), radial});
 	};
-	return layout.expand(listOf(layout.freeCount(), freePoint));
+	return layout.expand(listOf(layout.free_count, freePoint));
 }
 
 Pattern generatePattern(const Recipe& recipe, const RunSettings& run, const Watch& watch)

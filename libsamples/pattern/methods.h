@@ -26,36 +26,21 @@ class Layout
 public:
 	explicit Layout(const Recipe& recipe);
 
-	std::size_t freeCount() const
-	{
-		return m_free;
-	}
-
-	bool hasCentre() const
-	{
-		return m_centre;
-	}
-
-	bool symmetric() const
-	{
-		return m_symmetric;
-	}
-
-	Domain domain() const
-	{
-		return m_domain;
-	}
+	const Domain domain;
+	const bool has_centre;
+	const bool symmetric;
+	const std::size_t free_count;
 
 	// Number of variables per free point: (x, y) or (x, y, z).
 	std::size_t dimension() const
 	{
-		return isPlanar(m_domain) ? 2 : 3;
+		return isPlanar(domain) ? 2 : 3;
 	}
 
 	std::vector<glm::dvec3> expand(std::span<const glm::dvec3> free) const;    // all points
 	std::vector<glm::dvec3> freePoints(std::span<const glm::dvec3> all) const; // its inverse
 
-	// Converts to an optimiser's variables (dimension × freeCount) and back. False if a point leaves the domain.
+	// Converts to an optimiser's variables (dimension × free_count) and back. False if a point leaves the domain.
 	std::vector<double> variables(std::span<const glm::dvec3> all) const;
 	bool points(std::span<const double> variables, std::vector<glm::dvec3>& all) const;
 
@@ -69,13 +54,8 @@ public:
 private:
 	std::size_t firstFree(std::size_t k) const
 	{
-		return (m_centre ? 1U : 0U) + (m_symmetric ? 2 * k : k);
+		return (has_centre ? 1U : 0U) + (symmetric ? 2 * k : k);
 	}
-
-	Domain m_domain;
-	bool m_centre;
-	bool m_symmetric;
-	std::size_t m_free;
 };
 
 // Each step of a descent counts as one item; its end counts the remaining ones, since most descents stop early.

@@ -281,20 +281,20 @@ std::vector<std::size_t> farthestFirst(const Layout& layout, const Points& free)
 	const auto distance = [&](std::size_t a, std::size_t b)
 	{
 		const double straight = glm::distance(free[a], free[b]);
-		return layout.symmetric() ? std::min(straight, glm::distance(free[a], -free[b])) : straight;
+		return layout.symmetric ? std::min(straight, glm::distance(free[a], -free[b])) : straight;
 	};
-	const glm::dvec3 middle(0.0, 0.0, isDirectional(layout.domain()) ? 1.0 : 0.0);
+	const glm::dvec3 middle(0.0, 0.0, isDirectional(layout.domain) ? 1.0 : 0.0);
 	std::vector<double> gap(free.size());
 	std::size_t next = 0;
 	for (std::size_t i = 0; i < free.size(); ++i)
 	{
-		gap[i] = layout.hasCentre() ? glm::length(free[i]) : 4.0;
+		gap[i] = layout.has_centre ? glm::length(free[i]) : 4.0;
 		if (glm::distance(free[i], middle) < glm::distance(free[next], middle))
 		{
 			next = i;
 		}
 	}
-	if (layout.hasCentre() && !free.empty())
+	if (layout.has_centre && !free.empty())
 	{
 		next = static_cast<std::size_t>(std::max_element(gap.begin(), gap.end()) - gap.begin());
 	}

@@ -68,15 +68,6 @@ struct Recipe
 	double exponent = 0.0; // exponent of the sphere's repulsion energy 1/d^exponent, 0.1 to 64; 0: 1 (Thomson's problem)
 };
 
-// Throws Error where a condition holds.
-inline void refuseIf(bool condition, const std::string& message, ExitCode code = ExitCode::usage)
-{
-	if (condition)
-	{
-		throw Error(code, message);
-	}
-}
-
 // Throws Error (usage) if a value is out of range or options exclude each other; the message names the options.
 void checkRecipe(const Recipe& recipe);
 

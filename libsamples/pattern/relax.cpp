@@ -51,7 +51,7 @@ Points moved(const Layout& layout, const Points& points, const Points& step, dou
 	Points target = points;
 	for (std::size_t i = 0; i < points.size(); ++i)
 	{
-		target[i] = placeInDomain(layout.domain(), points[i] + scale * step[i]);
+		target[i] = placeInDomain(layout.domain, points[i] + scale * step[i]);
 	}
 	return layout.expand(layout.freePoints(target));
 }
@@ -68,14 +68,14 @@ public:
 	void take(Points points)
 	{
 		m_points = std::move(points);
-		m_cells = exactCells(m_layout.domain(), m_points);
+		m_cells = exactCells(m_layout.domain, m_points);
 		m_error = relativeSpread(m_cells.integrals);
 	}
 
 	// One force step, shortened until the error falls and longer the next time if accepted. False if no step helps.
 	bool repel(double& step)
 	{
-		const Points force = repulsion(m_layout.domain(), m_points);
+		const Points force = repulsion(m_layout.domain, m_points);
 		for (int trial = 0; trial < 4; ++trial)
 		{
 			Spread candidate(m_layout, moved(m_layout, m_points, force, step));
@@ -119,7 +119,7 @@ Points centroidsOf(const Layout& layout, const Cells& cells)
 	for (glm::dvec3& p : target)
 	{
 		// If one cell covers the whole sphere, its centroid is the centre; any direction will do.
-		p = layout.domain() == Domain::sphere && glm::dot(p, p) < 1e-20 ? glm::dvec3(0, 0, 1) : placeInDomain(layout.domain(), p);
+		p = layout.domain == Domain::sphere && glm::dot(p, p) < 1e-20 ? glm::dvec3(0, 0, 1) : placeInDomain(layout.domain, p);
 	}
 	return layout.expand(layout.freePoints(target));
 }
@@ -207,14 +207,14 @@ void relaxToCentroids(const Layout& layout, Points& points, int max_rounds, doub
 // Centroidal Voronoi.
 void relaxLloyd(const Layout& layout, Points& points, int max_rounds, const Seen& seen)
 {
-	relaxToCentroids(layout, points, max_rounds, 1e-7, seen, [&] { return exactCells(layout.domain(), points); });
+	relaxToCentroids(layout, points, max_rounds, 1e-7, seen, [&] { return exactCells(layout.domain, points); });
 }
 
 // Capacity-constrained centroidal power diagram (de Goes et al. 2012): alternates equalisingPowers and centroids.
 void relaxEqual(const Layout& layout, Points& points, int max_rounds, const Seen& seen)
 {
 	relaxToCentroids(layout, points, max_rounds, 1e-6, seen,
-					 [&] { return exactCells(layout.domain(), points, equalisingPowers(layout.domain(), points)); });
+					 [&] { return exactCells(layout.domain, points, equalisingPowers(layout.domain, points)); });
 }
 
 // Minimises Σ d^−exponent of directions near the start; returns that energy.

@@ -192,11 +192,10 @@ Pattern unionOf(const PatternTile& tile, double divisor)
 
 double lambdaOf(const TileRecipe& recipe)
 {
-	if (recipe.lambda > 0.0)
-	{
-		return recipe.lambda;
-	}
-	return recipe.filters.empty() ? kPointsLambda : recipe.frames > 1 ? kFramesLambda : kFilterLambda;
+	return recipe.lambda > 0.0      ? recipe.lambda
+		   : recipe.filters.empty() ? kPointsLambda
+		   : recipe.frames > 1      ? kFramesLambda
+									: kFilterLambda;
 }
 
 double tileError(Domain domain, const VariantUnion& all, std::size_t variants, double lambda, EnergyGradient& gradient, int threads)

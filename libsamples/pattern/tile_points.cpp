@@ -35,10 +35,10 @@ public:
 	FreeTile(const Pattern& base, std::size_t variants, bool open)
 		: m_base(base), m_layout(structureOf(base)), m_variants(variants), m_count(base.count()), m_open(open)
 	{
-		const std::size_t centre = m_layout.hasCentre() ? 1 : 0;
+		const std::size_t centre = m_layout.has_centre ? 1 : 0;
 		for (std::size_t i = 0; i < m_count; ++i)
 		{
-			m_slot.push_back(i < centre ? 0 : m_layout.symmetric() ? centre + (i - centre) / 2 : i);
+			m_slot.push_back(i < centre ? 0 : m_layout.symmetric ? centre + (i - centre) / 2 : i);
 		}
 	}
 
@@ -161,7 +161,7 @@ private:
 	}
 	std::size_t pointSize() const
 	{
-		return m_layout.dimension() * m_layout.freeCount();
+		return m_layout.dimension() * m_layout.free_count;
 	}
 	std::size_t size() const
 	{
@@ -204,7 +204,7 @@ private:
 			{
 				p[axis] += shake * (random.uniform() - 0.5);
 			}
-			p = placeInDomain(m_layout.domain(), p);
+			p = placeInDomain(m_layout.domain, p);
 		}
 		return m_layout.expand(m_layout.freePoints(points));
 	}
@@ -366,7 +366,7 @@ uint64_t pointsMemory(const Pattern& base, const TileRecipe& recipe, int threads
 	const uint64_t starts = startsOf(base.domain, recipe, static_cast<std::size_t>(samples));
 	const bool slices = base.domain == Domain::slice;
 	const Recipe structure = structureOf(base);
-	const uint64_t slots = slices ? base.count() : Layout(structure).freeCount() + (structure.centre ? 1U : 0U);
+	const uint64_t slots = slices ? base.count() : Layout(structure).free_count + (structure.centre ? 1U : 0U);
 	const uint64_t numbers = variants * slots * (slices ? 2 : isPlanar(base.domain) ? 3 : 4);
 	// L-BFGS: position, gradient, direction, the next two, and the step pairs plus one under construction.
 	const uint64_t descent =

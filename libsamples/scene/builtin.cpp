@@ -38,11 +38,9 @@ constexpr std::array<Builtin, 7> kBuiltins{{{"cornell", makeCornell},
 std::size_t triangleCount(std::string_view text, const Builtin& level)
 {
 	const std::optional<std::size_t> count = numberFrom<std::size_t>(text);
-	if (!count || *count < level.least || *count > level.most)
-	{
-		refuseInput("builtin:" + std::string(level.name), "'" + std::string(text) + "'",
-					std::to_string(level.least) + " to " + std::to_string(level.most) + " triangles", ExitCode::usage);
-	}
+	refuseInputIf(!count || *count < level.least || *count > level.most, "builtin:" + std::string(level.name),
+				  "'" + std::string(text) + "'", std::to_string(level.least) + " to " + std::to_string(level.most) + " triangles",
+				  ExitCode::usage);
 	return *count;
 }
 
@@ -101,11 +99,8 @@ Level builtinLevel(std::string_view name)
 	const auto* const found =
 		std::find_if(kBuiltins.begin(), kBuiltins.end(), [&](const Builtin& one) { return one.name == base; });
 	const bool has_count = base != name;
-	if (found == kBuiltins.end() || (has_count && found->make_sized == nullptr))
-	{
-		refuseInput("builtin", "'" + std::string(name) + "'",
-					"one of " + joinedText(builtinNames(), ", ") + ", heightfield:N or cave:N", ExitCode::usage);
-	}
+	refuseInputIf(found == kBuiltins.end() || (has_count && found->make_sized == nullptr), "builtin", "'" + std::string(name) + "'",
+				  "one of " + joinedText(builtinNames(), ", ") + ", heightfield:N or cave:N", ExitCode::usage);
 	const std::size_t triangles = has_count ? triangleCount(name.substr(base.size() + 1), *found) : found->triangles;
 	Level level = found->make != nullptr ? found->make() : found->make_sized(triangles);
 	level.name = std::string(kBuiltinPrefix) + std::string(name);

@@ -64,11 +64,8 @@ bool beginsInside(const std::vector<Corner>& ring, std::size_t i, glm::dvec2 to)
 	const glm::dvec2 before = ring[(i + ring.size() - 1) % ring.size()].at;
 	const glm::dvec2 at = ring[i].at;
 	const glm::dvec2 after = ring[(i + 1) % ring.size()].at;
-	if (turn(before, at, after) > 0.0)
-	{
-		return turn(at, to, before) > 0.0 && turn(to, at, after) > 0.0;
-	}
-	return !(turn(at, to, after) >= 0.0 && turn(to, at, before) >= 0.0);
+	return turn(before, at, after) > 0.0 ? turn(at, to, before) > 0.0 && turn(to, at, after) > 0.0
+										 : !(turn(at, to, after) >= 0.0 && turn(to, at, before) >= 0.0);
 }
 
 // Joins a hole to the ring along the shortest line between them that crosses nothing.

@@ -27,9 +27,9 @@ glm::dvec4 rowOf(const glm::dmat4& m, int row)
 	return {m[0][row], m[1][row], m[2][row], m[3][row]};
 }
 
-[[noreturn]] void refuseCamera(const std::string& found)
+void refuseCameraIf(bool condition, const std::string& found)
 {
-	refuseInput("projection", found, "a perspective or parallel projection, column by column, along -z");
+	refuseInputIf(condition, "projection", found, "a perspective or parallel projection, column by column, along -z");
 }
 
 constexpr double kDefaultFov = 60.0; // degrees
@@ -61,19 +61,15 @@ Lens lensOf(const CameraOptions& options, const LevelCamera& camera)
 	Lens lens = camera.lens;
 	if (options.fov_y_deg)
 	{
-		if (lens.orthographic)
-		{
-			refuseInput("--fov", "an orthographic camera '" + camera.name + "'", "a perspective one", ExitCode::usage);
-		}
+		refuseInputIf(lens.orthographic, "--fov", "an orthographic camera '" + camera.name + "'", "a perspective one",
+					  ExitCode::usage);
 		lens.fov_y_rad = *options.fov_y_deg * (kPi / 180.0);
 	}
 	if (options.near_m)
 	{
 		lens.near_m = *options.near_m;
-		if (!(lens.near_m < lens.far_m))
-		{
-			refuseInput("--near", "a plane beyond the far one of camera '" + camera.name + "'", "one before it", ExitCode::usage);
-		}
+		refuseInputIf(!(lens.near_m < lens.far_m), "--near", "a plane beyond the far one of camera '" + camera.name + "'",
+					  "one before it", ExitCode::usage);
 	}
 	return lens;
 }
@@ -173,30 +169,19 @@ Projector::Projector(const glm::dmat4& projection, int width_px, int height_px)
 	for (int row = 0; row < 4; ++row)
 	{
 		const double length = glm::length(rowOf(projection, row));
-		if (!std::isfinite(length))
-		{
-			refuseCamera("a number that is not finite");
-		}
+		refuseCameraIf(!std::isfinite(length), "a number that is not finite");
 		scale *= length;
 	}
 	// Linearly dependent rows would collapse one dimension. Tuned on near planes down to 1e-7 of the far one.
-	if (!(std::fabs(glm::determinant(projection)) > 1e-14 * scale))
-	{
-		refuseCamera("a singular matrix");
-	}
+	refuseCameraIf(!(std::fabs(glm::determinant(projection)) > 1e-14 * scale), "a singular matrix");
 	for (const glm::dvec2 at : kChecked)
 	{
 		const ViewLine line = lineOf({at.x * m_width_px, at.y * m_height_px});
 		// Directions are stored as 32-bit numbers whose squares must not overflow; no picture is 1e9 times as wide as deep.
-		if (!(glm::dot(line.along, line.along) <= 1e18) || !std::isfinite(glm::dot(line.at, line.at)))
-		{
-			refuseCamera("a picture without one line of sight per pixel");
-		}
+		refuseCameraIf(!(glm::dot(line.along, line.along) <= 1e18) || !std::isfinite(glm::dot(line.at, line.at)),
+					   "a picture without one line of sight per pixel");
 		const glm::dvec3 far_away = line.at + 1e6 * line.along;
-		if (!(glm::dot(rowOf(projection, 3), glm::dvec4(far_away, 1.0)) > 0.0))
-		{
-			refuseCamera("one that looks the other way");
-		}
+		refuseCameraIf(!(glm::dot(rowOf(projection, 3), glm::dvec4(far_away, 1.0)) > 0.0), "one that looks the other way");
 	}
 }
 
@@ -229,15 +214,11 @@ double Projector::depthOfDevice(double z_ndc, const ViewLine& line) const
 
 void checkCameras(const CameraOptions& options)
 {
-	if (options.eye && !(glm::length(*options.eye - *options.target) > 0.0))
-	{
-		refuseInput("--target", "the eye itself", "another point", ExitCode::usage);
-	}
-	if (options.camera_from_world && !isRigid(*options.camera_from_world))
-	{
-		refuseInput("--world-to-camera", "a matrix that scales, shears, mirrors or projects",
-					"a rotation and a translation, column by column", ExitCode::usage);
-	}
+	refuseInputIf(options.eye && !(glm::length(*options.eye - *options.target) > 0.0), "--target", "the eye itself",
+				  "another point", ExitCode::usage);
+	refuseInputIf(options.camera_from_world && !isRigid(*options.camera_from_world), "--world-to-camera",
+				  "a matrix that scales, shears, mirrors or projects", "a rotation and a translation, column by column",
+				  ExitCode::usage);
 	if (options.projection)
 	{
 		const Projector checked(*options.projection, options.width_px, options.height_px);

@@ -696,10 +696,8 @@ std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const Ru
 		memo.cameras = std::move(cameras);
 		memo.chosen = std::max(count, kUsual);
 	}
-	if (memo.cameras.empty())
-	{
-		refuseInput(tracer.level().name + ": cameras", "no view that shows anything of it", "an explicit camera (eye, target)");
-	}
+	refuseInputIf(memo.cameras.empty(), tracer.level().name + ": cameras", "no view that shows anything of it",
+				  "an explicit camera (eye, target)");
 	const std::size_t found = std::min(static_cast<std::size_t>(count), memo.cameras.size());
 	return {memo.cameras.begin(), memo.cameras.begin() + static_cast<std::ptrdiff_t>(found)};
 }
@@ -713,11 +711,8 @@ CamerasOfLevel camerasOf(const Tracer& tracer, std::string_view name, int automa
 	}
 	const int count = std::max(automatic, 1);
 	CamerasOfLevel found{chooseCameras(tracer, count, run), true};
-	if (found.cameras.size() < static_cast<std::size_t>(count))
-	{
-		refuseInput(level.name + ": cameras", std::to_string(found.cameras.size()) + " views that show something",
-					std::to_string(count));
-	}
+	refuseInputIf(found.cameras.size() < static_cast<std::size_t>(count), level.name + ": cameras",
+				  std::to_string(found.cameras.size()) + " views that show something", std::to_string(count));
 	return found;
 }
 

@@ -15,9 +15,9 @@ namespace nook
 namespace
 {
 
-[[noreturn]] void refuse(const std::string& name, const std::string& found, const std::string& expected)
+void refuseMeshIf(bool condition, const std::string& name, const std::string& found, const std::string& expected)
 {
-	refuseInput(name + ": KHR_draco_mesh_compression", found, expected);
+	refuseInputIf(condition, name + ": KHR_draco_mesh_compression", found, expected);
 }
 
 std::unique_ptr<draco::Mesh> meshOf(const std::string& name, const std::vector<char>& coded)
@@ -25,10 +25,7 @@ std::unique_ptr<draco::Mesh> meshOf(const std::string& name, const std::vector<c
 	draco::DecoderBuffer buffer;
 	buffer.Init(coded.data(), coded.size());
 	draco::StatusOr<std::unique_ptr<draco::Mesh>> mesh = draco::Decoder().DecodeMeshFromBuffer(&buffer);
-	if (!mesh.ok())
-	{
-		refuse(name, "\"" + mesh.status().error_msg_string().substr(0, 200) + "\"", "a mesh that Draco decodes");
-	}
+	refuseMeshIf(!mesh.ok(), name, "\"" + mesh.status().error_msg_string().substr(0, 200) + "\"", "a mesh that Draco decodes");
 	return std::move(mesh).value();
 }
 
@@ -68,16 +65,11 @@ void send(const std::string& name, const draco::Mesh& mesh, const std::vector<Dr
 	for (const DracoAttribute& as : attributes)
 	{
 		const draco::PointAttribute* const attribute = mesh.GetAttributeByUniqueId(as.id);
-		if (attribute == nullptr)
-		{
-			refuse(name, "no attribute " + std::to_string(as.id), "those that the primitive names");
-		}
-		if (static_cast<uint32_t>(attribute->num_components()) != as.components ||
-			!convert(*attribute, mesh.num_points(), as, bytes))
-		{
-			refuse(name, std::to_string(attribute->num_components()) + " components of attribute " + std::to_string(as.id),
-				   std::to_string(as.components));
-		}
+		refuseMeshIf(attribute == nullptr, name, "no attribute " + std::to_string(as.id), "those that the primitive names");
+		refuseMeshIf(static_cast<uint32_t>(attribute->num_components()) != as.components ||
+						 !convert(*attribute, mesh.num_points(), as, bytes),
+					 name, std::to_string(attribute->num_components()) + " components of attribute " + std::to_string(as.id),
+					 std::to_string(as.components));
 		answer.values(bytes);
 	}
 }

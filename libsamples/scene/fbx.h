@@ -55,20 +55,11 @@ class FbxFile
 {
 public:
 	// Reads versions 7.1 to 7.7. Throws Error: file, invalid_input, unsupported for other versions.
-	explicit FbxFile(std::string path);
+	explicit FbxFile(std::string of);
 
-	const std::string& path() const
-	{
-		return m_path;
-	}
-	const FbxNode& root() const
-	{
-		return m_root;
-	}
-	bool isText() const
-	{
-		return m_is_text;
-	}
+	const std::string path;
+	FbxNode root;
+	bool is_text = false;
 
 	// Value `index` of a node as text; empty if absent. ASCII escapes are resolved.
 	std::string text(const FbxNode& node, std::size_t index) const;
@@ -85,11 +76,8 @@ private:
 	// `what`: the numbers that are expected, for errors.
 	void decode(const FbxValue& value, const std::string& where, const char* what, std::vector<double>& into) const;
 
-	std::string m_path;
 	std::string m_bytes;
 	bool m_big_endian = false;
-	bool m_is_text = false;
-	FbxNode m_root;
 };
 
 // Value `index` of a node if it is a number.
@@ -123,10 +111,8 @@ public:
 	// Throws Error like FbxFile.
 	explicit FbxObjects(const std::string& path);
 
-	const FbxFile& file() const
-	{
-		return m_file;
-	}
+	const FbxFile file;
+
 	std::size_t count() const
 	{
 		return m_objects.size();
@@ -155,7 +141,6 @@ private:
 	void readConnections();
 	const FbxNode* property(const FbxObject& object, std::string_view name) const;
 
-	FbxFile m_file;
 	std::map<std::string, FbxProperties, std::less<>> m_templates; // by object type, and "NodeAttribute/FbxCamera"
 	std::vector<FbxObject> m_objects;
 	std::map<int64_t, std::size_t> m_index_of; // by identifier

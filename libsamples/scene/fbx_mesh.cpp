@@ -21,17 +21,14 @@ std::vector<T> arrayBelow(const FbxObjects& objects, const FbxObject& object, co
 {
 	const FbxNode* const node = parent.child(name);
 	return node == nullptr ? std::vector<T>()
-						   : objects.file().arrayOf<T>(*node, FbxObjects::placeOf(object) + ": " + std::string(name));
+						   : objects.file.arrayOf<T>(*node, FbxObjects::placeOf(object) + ": " + std::string(name));
 }
 
 std::vector<glm::dvec3> vectorsBelow(const FbxObjects& objects, const FbxObject& object, std::string_view name)
 {
 	const std::vector<double> numbers = arrayBelow<double>(objects, object, *object.node, name);
-	if (numbers.size() % 3 != 0)
-	{
-		objects.file().fail(FbxObjects::placeOf(object) + ": " + std::string(name), std::to_string(numbers.size()) + " numbers",
-							"three for each point");
-	}
+	failIf(numbers.size() % 3 != 0, objects.file, FbxObjects::placeOf(object) + ": " + std::string(name),
+		   std::to_string(numbers.size()) + " numbers", "three for each point");
 	return listOf(numbers.size() / 3,
 				  [&numbers](std::size_t i) { return glm::dvec3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]); });
 }
@@ -48,10 +45,10 @@ FbxLayer::By mappingOf(const std::string& name)
 FbxLayer layerOf(const FbxObjects& objects, const FbxObject& geometry, const FbxNode& node, const std::string& values)
 {
 	FbxLayer layer;
-	layer.name = objects.file().textBelow(node, "Name");
-	layer.by = mappingOf(objects.file().textBelow(node, "MappingInformationType"));
+	layer.name = objects.file.textBelow(node, "Name");
+	layer.by = mappingOf(objects.file.textBelow(node, "MappingInformationType"));
 	layer.values = arrayBelow<double>(objects, geometry, node, values);
-	if (objects.file().textBelow(node, "ReferenceInformationType") != "Direct")
+	if (objects.file.textBelow(node, "ReferenceInformationType") != "Direct")
 	{
 		layer.indices = arrayBelow<int64_t>(objects, geometry, node, values + "Index");
 	}
@@ -66,7 +63,7 @@ int64_t defaultOf(const FbxObjects& objects, const FbxObject& geometry, std::str
 	{
 		const FbxNode& element = layer->children[i];
 		const FbxNode* const index = element.child("TypedIndex");
-		if (element.name == "LayerElement" && objects.file().textBelow(element, "Type") == type && index != nullptr)
+		if (element.name == "LayerElement" && objects.file.textBelow(element, "Type") == type && index != nullptr)
 		{
 			return wholeAt(*index, 0).value_or(0);
 		}
@@ -161,8 +158,8 @@ std::size_t pointAt(const FbxObjects& objects, const FbxObject& object, int64_t 
 {
 	if (index < 0 || static_cast<std::size_t>(index) >= points)
 	{
-		objects.file().fail(FbxObjects::placeOf(object) + ": Indexes", std::to_string(index),
-							"one of " + std::to_string(points) + " points");
+		objects.file.fail(FbxObjects::placeOf(object) + ": Indexes", std::to_string(index),
+						  "one of " + std::to_string(points) + " points");
 	}
 	return static_cast<std::size_t>(index);
 }
@@ -173,10 +170,8 @@ void applyShape(const FbxObjects& objects, const Target& target, std::vector<glm
 	const std::vector<int64_t> indices = arrayBelow<int64_t>(objects, shape, *shape.node, "Indexes");
 	const std::vector<glm::dvec3> moves = vectorsBelow(objects, shape, "Vertices");
 	const std::vector<glm::dvec3> turns = vectorsBelow(objects, shape, "Normals");
-	if (moves.size() != indices.size())
-	{
-		objects.file().fail(FbxObjects::placeOf(shape), std::to_string(moves.size()) + " points", std::to_string(indices.size()));
-	}
+	failIf(moves.size() != indices.size(), objects.file, FbxObjects::placeOf(shape), std::to_string(moves.size()) + " points",
+		   std::to_string(indices.size()));
 	for (std::size_t i = 0; i < indices.size(); ++i)
 	{
 		const std::size_t point = pointAt(objects, shape, indices[i], points.size());
@@ -222,11 +217,8 @@ std::vector<Bone> bonesOf(const FbxObjects& objects, const FbxObject& geometry, 
 std::optional<glm::dmat4> matrixBelow(const FbxObjects& objects, const FbxObject& cluster, std::string_view name)
 {
 	const std::vector<double> numbers = arrayBelow<double>(objects, cluster, *cluster.node, name);
-	if (numbers.size() != 16 && !numbers.empty())
-	{
-		objects.file().fail(FbxObjects::placeOf(cluster) + ": " + std::string(name), std::to_string(numbers.size()) + " numbers",
-							"16");
-	}
+	failIf(numbers.size() != 16 && !numbers.empty(), objects.file, FbxObjects::placeOf(cluster) + ": " + std::string(name),
+		   std::to_string(numbers.size()) + " numbers", "16");
 	return numbers.empty() ? std::nullopt : std::optional(glm::make_mat4(numbers.data()));
 }
 
@@ -296,7 +288,7 @@ public:
 		for (const std::size_t index : objects.partsOf(geometry, {}, "Skin"))
 		{
 			const FbxObject& skin = objects[index];
-			const std::string type = objects.file().textBelow(*skin.node, "SkinningType");
+			const std::string type = objects.file.textBelow(*skin.node, "SkinningType");
 			if (type != "DualQuaternion" && type != "Blend")
 			{
 				continue;
@@ -314,7 +306,7 @@ public:
 
 	std::vector<glm::dmat4> run(const std::vector<Bone>& bones)
 	{
-		const std::string mode = m_objects.file().textBelow(*bones.front().cluster->node, "Mode");
+		const std::string mode = m_objects.file.textBelow(*bones.front().cluster->node, "Mode");
 		m_link = mode == "Additive" ? Link::additive : mode == "Total1" || mode == "TotalOne" ? Link::total_one : Link::normalized;
 		for (const Bone& bone : bones)
 		{
@@ -343,11 +335,8 @@ private:
 		const FbxObject& cluster = *bone.cluster;
 		const std::vector<int64_t> indices = arrayBelow<int64_t>(m_objects, cluster, *cluster.node, "Indexes");
 		const std::vector<double> weights = arrayBelow<double>(m_objects, cluster, *cluster.node, "Weights");
-		if (indices.size() != weights.size())
-		{
-			m_objects.file().fail(FbxObjects::placeOf(cluster) + ": Weights", std::to_string(weights.size()) + " numbers",
-								  std::to_string(indices.size()) + ", one for each of Indexes");
-		}
+		failIf(indices.size() != weights.size(), m_objects.file, FbxObjects::placeOf(cluster) + ": Weights",
+			   std::to_string(weights.size()) + " numbers", std::to_string(indices.size()) + ", one for each of Indexes");
 		const glm::dmat4 world = worldOfBone(m_objects, bone, m_mesh);
 		const glm::dmat4 mesh_from_world = glm::inverse(m_rest);
 		const DualSum dual(world);
@@ -407,7 +396,7 @@ FbxLayer readFbxMaterials(const FbxObjects& objects, const FbxObject& geometry)
 	FbxLayer layer;
 	if (node != nullptr)
 	{
-		layer.by = mappingOf(objects.file().textBelow(*node, "MappingInformationType"));
+		layer.by = mappingOf(objects.file.textBelow(*node, "MappingInformationType"));
 		layer.values = arrayBelow<double>(objects, geometry, *node, "Materials");
 	}
 	return layer;

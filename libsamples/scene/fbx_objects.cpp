@@ -112,10 +112,7 @@ public:
 		const auto models = std::count_if(m_parents.begin(), m_parents.end(), [](std::size_t parent) { return parent != 0; });
 		const auto below =
 			std::count_if(m_places.begin(), m_places.end(), [&](const FbxPlace& place) { return m_parents[place.object] != 0; });
-		if (models != below)
-		{
-			m_objects.file().fail("Connections", "a circle of nodes", "a tree");
-		}
+		failIf(models != below, m_objects.file, "Connections", "a circle of nodes", "a tree");
 		return std::move(m_places);
 	}
 
@@ -239,7 +236,7 @@ FbxProperties propertiesOf(const FbxNode& parent)
 	return properties;
 }
 
-FbxObjects::FbxObjects(const std::string& path) : m_file(path)
+FbxObjects::FbxObjects(const std::string& path) : file(path)
 {
 	readTemplates();
 	readObjects();
@@ -248,14 +245,14 @@ FbxObjects::FbxObjects(const std::string& path) : m_file(path)
 
 void FbxObjects::readTemplates()
 {
-	for (const FbxNode& type : m_file.root().childrenOf("Definitions"))
+	for (const FbxNode& type : file.root.childrenOf("Definitions"))
 	{
 		for (const FbxNode& from : type.children)
 		{
 			if (type.name == "ObjectType" && from.name == "PropertyTemplate")
 			{
-				const std::string name = m_file.text(type, 0);
-				m_templates.try_emplace(name == "NodeAttribute" ? name + "/" + m_file.text(from, 0) : name, propertiesOf(from));
+				const std::string name = file.text(type, 0);
+				m_templates.try_emplace(name == "NodeAttribute" ? name + "/" + file.text(from, 0) : name, propertiesOf(from));
 			}
 		}
 	}
@@ -265,7 +262,7 @@ void FbxObjects::readObjects()
 {
 	m_objects.emplace_back();
 	m_index_of[0] = 0;
-	const std::vector<FbxNode>& list = m_file.root().childrenOf("Objects");
+	const std::vector<FbxNode>& list = file.root.childrenOf("Objects");
 	m_objects.reserve(list.size() + 1);
 	for (const FbxNode& node : list)
 	{
@@ -277,8 +274,8 @@ void FbxObjects::readObjects()
 		FbxObject& object = m_objects.emplace_back();
 		object.node = &node;
 		object.type = node.name;
-		object.name = objectName(m_file.text(node, 1));
-		object.kind = m_file.text(node, 2);
+		object.name = objectName(file.text(node, 1));
+		object.kind = file.text(node, 2);
 		object.own = propertiesOf(node);
 		const auto common =
 			m_templates.find(object.type == "NodeAttribute" ? "NodeAttribute/Fbx" + object.kind : std::string(object.type));
@@ -288,11 +285,11 @@ void FbxObjects::readObjects()
 
 void FbxObjects::readConnections()
 {
-	for (const FbxNode& node : m_file.root().childrenOf("Connections"))
+	for (const FbxNode& node : file.root.childrenOf("Connections"))
 	{
 		const std::optional<int64_t> from = wholeAt(node, 1);
 		const std::optional<int64_t> to = wholeAt(node, 2);
-		const std::string type = m_file.text(node, 0);
+		const std::string type = file.text(node, 0);
 		if (!from || !to || (type != "OO" && type != "OP"))
 		{
 			continue;
@@ -338,7 +335,7 @@ glm::dvec3 FbxObjects::vector(const FbxObject& object, std::string_view name, gl
 std::string FbxObjects::text(const FbxObject& object, std::string_view name) const
 {
 	const FbxNode* const found = property(object, name);
-	return found == nullptr ? "" : m_file.text(*found, kFirstValue);
+	return found == nullptr ? "" : file.text(*found, kFirstValue);
 }
 
 std::vector<std::size_t> FbxObjects::partsOf(const FbxObject& object, std::string_view type, std::string_view kind,

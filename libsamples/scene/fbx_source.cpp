@@ -33,7 +33,7 @@ FileAxes axesOf(const FbxObjects& objects)
 	FileAxes axes;
 	axes.unit_m = 0.01;
 	FbxObject settings;
-	if (const FbxNode* const node = objects.file().root().child("GlobalSettings"))
+	if (const FbxNode* const node = objects.file.root.child("GlobalSettings"))
 	{
 		settings.own = propertiesOf(*node);
 	}
@@ -67,7 +67,7 @@ class FbxSender
 {
 public:
 	FbxSender(const FbxObjects& objects, const LoadSettings& settings, ValueWriter& to)
-		: m_objects(objects), m_file(objects.file()), m_settings(settings),
+		: m_objects(objects), m_file(objects.file), m_settings(settings),
 		  m_world_from_file(worldFromFile(settings, axesOf(objects))), m_to(to), m_places(placesOf(objects)),
 		  m_worlds(objects.count(), nullptr), m_uses(objects.count(), 0)
 	{
@@ -286,7 +286,7 @@ private:
 		for (std::size_t i = 0; i < content.values.size(); ++i)
 		{
 			std::string part = m_file.text(content, i);
-			if (!m_file.isText())
+			if (!m_file.is_text)
 			{
 				bytes += part;
 				continue;
@@ -298,10 +298,7 @@ private:
 				continue;
 			}
 			const std::optional<std::vector<uint8_t>> plain = bytesOfBase64(open);
-			if (!plain)
-			{
-				m_file.fail(FbxObjects::placeOf(texture) + ": Content", "another text", "base64");
-			}
+			failIf(!plain, m_file, FbxObjects::placeOf(texture) + ": Content", "another text", "base64");
 			bytes.append(plain->begin(), plain->end());
 			open.clear();
 		}
@@ -393,10 +390,8 @@ private:
 			tangent = 0.5 * 25.4 * number("FilmWidth", 0.0) / number("FocalLength", 0.0) / aspect; // inches, millimetres
 		}
 		lens.fov_y_rad = 2.0 * std::atan(tangent);
-		if (!(lens.fov_y_rad > 0.0 && lens.fov_y_rad < kPi))
-		{
-			m_file.fail(FbxObjects::placeOf(camera), "a lens that sees nothing", "an angle between 0 and 180 degrees");
-		}
+		failIf(!(lens.fov_y_rad > 0.0 && lens.fov_y_rad < kPi), m_file, FbxObjects::placeOf(camera), "a lens that sees nothing",
+			   "an angle between 0 and 180 degrees");
 		return lens;
 	}
 
@@ -414,7 +409,7 @@ private:
 		}
 		if (corners > 3 * uint64_t{kMaxTriangles})
 		{
-			refuseInput(m_file.path(), std::to_string(corners) + " corners of polygons, counting every instance",
+			refuseInput(m_file.path, std::to_string(corners) + " corners of polygons, counting every instance",
 						"at most " + std::to_string(3 * kMaxTriangles));
 		}
 	}
@@ -448,11 +443,8 @@ private:
 			}
 		}
 		m_triangles += m_mesh.corners.size() - std::min(m_mesh.corners.size(), 2 * m_mesh.ends.size());
-		if (m_triangles > kMaxTriangles)
-		{
-			refuseInput(m_file.path(), "more than " + std::to_string(kMaxTriangles) + " triangles, counting every instance",
-						"at most so many");
-		}
+		refuseInputIf(m_triangles > kMaxTriangles, m_file.path,
+					  "more than " + std::to_string(kMaxTriangles) + " triangles, counting every instance", "at most so many");
 		pose(instance, geometry);
 		for (const auto& [material, polygons] : groupsOf(instance))
 		{

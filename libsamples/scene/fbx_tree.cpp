@@ -247,17 +247,20 @@ public:
 		return nodes(0);
 	}
 
-private:
 	[[noreturn]] void fail(const std::string& found, const std::string& expected) const
 	{
 		const auto line = 1 + std::count(m_text.begin(), m_text.begin() + static_cast<std::ptrdiff_t>(m_at), '\n');
 		refuseInput(m_path + ": line " + std::to_string(line), found, expected);
 	}
 
-	[[noreturn]] void failHere(const std::string& expected) const
+private:
+	void failHereIf(bool condition, const char* expected) const
 	{
-		fail(m_at >= m_text.size() ? "the file's end" : quoted(m_text.substr(m_at, m_text.find_first_of(kSpaces, m_at) - m_at)),
-			 expected);
+		if (condition)
+		{
+			fail(m_at >= m_text.size() ? "the file's end" : quoted(m_text.substr(m_at, m_text.find_first_of(kSpaces, m_at) - m_at)),
+				 expected);
+		}
 	}
 
 	// The next character that is neither blank nor comment; 0 at the end.
@@ -277,12 +280,9 @@ private:
 		return 0;
 	}
 
-	void need(char c, const std::string& expected)
+	void need(char c, const char* expected)
 	{
-		if (next() != c)
-		{
-			failHere(expected);
-		}
+		failHereIf(next() != c, expected);
 		m_at += 1;
 	}
 
@@ -304,10 +304,7 @@ private:
 		{
 			FbxNode& node = list.emplace_back();
 			node.name = word();
-			if (node.name.empty() || next() != ':')
-			{
-				failHere("the name of a node and a colon");
-			}
+			failHereIf(node.name.empty() || next() != ':', "the name of a node and a colon");
 			m_at += 1;
 			values(node);
 			if (next() == '{')
@@ -317,10 +314,7 @@ private:
 				need('}', "}");
 			}
 		}
-		if (depth == 0 && m_at < m_text.size())
-		{
-			failHere("the name of a node");
-		}
+		failHereIf(depth == 0 && m_at < m_text.size(), "the name of a node");
 		return list;
 	}
 
@@ -355,29 +349,20 @@ private:
 				if (text.empty() || next() == ':')
 				{
 					m_at = start; // the next node's name
-					if (text.empty() || expected)
-					{
-						failHere("a value");
-					}
+					failHereIf(text.empty() || expected, "a value");
 					return;
 				}
 				node.values.push_back(scalar(text));
 			}
 			expected = false;
 		}
-		if (expected)
-		{
-			failHere("a value");
-		}
+		failHereIf(expected, "a value");
 	}
 
 	FbxValue string()
 	{
 		const std::size_t end = m_text.find('"', m_at + 1);
-		if (end == std::string_view::npos)
-		{
-			fail("a text without an end", "\"");
-		}
+		failIf(end == std::string_view::npos, *this, "a text without an end", "\"");
 		FbxValue value;
 		value.kind = FbxValue::Kind::text;
 		value.bytes = m_text.substr(m_at + 1, end - m_at - 1);
@@ -408,27 +393,18 @@ private:
 	{
 		m_at += 1;
 		const FbxValue count = scalar(word());
-		if (count.kind != FbxValue::Kind::whole || count.whole < 0)
-		{
-			failHere("an array's length");
-		}
+		failHereIf(count.kind != FbxValue::Kind::whole || count.whole < 0, "an array's length");
 		FbxValue value;
 		value.kind = FbxValue::Kind::array;
 		value.count = static_cast<uint64_t>(count.whole);
 		need('{', "{ of an array");
 		if (next() != '}')
 		{
-			if (word() != "a")
-			{
-				failHere("a: of an array");
-			}
+			failHereIf(word() != "a", "a: of an array");
 			need(':', "a: of an array");
 		}
 		const std::size_t end = m_text.find('}', m_at);
-		if (end == std::string_view::npos)
-		{
-			fail("an array without an end", "}");
-		}
+		failIf(end == std::string_view::npos, *this, "an array without an end", "}");
 		value.bytes = m_text.substr(m_at, end - m_at);
 		m_at = end + 1;
 		return value;
@@ -505,31 +481,28 @@ std::optional<int64_t> wholeAt(const FbxNode& node, std::size_t index)
 	return number ? wholeFrom(*number) : std::nullopt;
 }
 
-FbxFile::FbxFile(std::string path) : m_path(std::move(path)), m_bytes(readFile(m_path))
+FbxFile::FbxFile(std::string of) : path(std::move(of)), m_bytes(readFile(path))
 {
 	if (m_bytes.starts_with(kMagic))
 	{
 		m_big_endian = m_bytes.size() > kMagic.size() && m_bytes[kMagic.size()] != 0;
-		m_root.children = BinaryParser(m_path, m_bytes, m_big_endian).run();
+		root.children = BinaryParser(path, m_bytes, m_big_endian).run();
 		return;
 	}
-	m_is_text = true;
+	is_text = true;
 	constexpr std::string_view kMark = "\xEF\xBB\xBF";
 	const std::string_view text = m_bytes;
-	m_root.children = TextParser(m_path, text.substr(text.starts_with(kMark) ? kMark.size() : 0)).run();
-	const FbxNode* const header = m_root.child("FBXHeaderExtension");
+	root.children = TextParser(path, text.substr(text.starts_with(kMark) ? kMark.size() : 0)).run();
+	const FbxNode* const header = root.child("FBXHeaderExtension");
 	const FbxNode* const version = header == nullptr ? nullptr : header->child("FBXVersion");
 	const std::optional<int64_t> number = version == nullptr ? std::nullopt : wholeAt(*version, 0);
-	if (!number)
-	{
-		fail("FBXHeaderExtension.FBXVersion", "nothing", "a version, as FBX files have");
-	}
-	checkVersion(m_path, *number);
+	failIf(!number, *this, "FBXHeaderExtension.FBXVersion", "nothing", "a version, as FBX files have");
+	checkVersion(path, *number);
 }
 
 void FbxFile::fail(const std::string& where, const std::string& found, const std::string& expected) const
 {
-	refuseInput(m_path + ": " + where, found, expected);
+	refuseInput(path + ": " + where, found, expected);
 }
 
 std::string FbxFile::text(const FbxNode& node, std::size_t index) const
@@ -539,7 +512,7 @@ std::string FbxFile::text(const FbxNode& node, std::size_t index) const
 		return "";
 	}
 	const std::string_view bytes = node.values[index].bytes;
-	return m_is_text && bytes.find('&') != std::string_view::npos ? unescapedText(bytes) : std::string(bytes);
+	return is_text && bytes.find('&') != std::string_view::npos ? unescapedText(bytes) : std::string(bytes);
 }
 
 std::string FbxFile::textBelow(const FbxNode& parent, std::string_view name) const
@@ -587,10 +560,8 @@ void FbxFile::decode(const FbxValue& value, const std::string& where, const char
 		const std::size_t size = BinaryParser::sizeOf(value.type);
 		const std::string plain = value.compressed ? inflated(value, value.count * size) : std::string();
 		const std::string_view bytes = value.compressed ? std::string_view(plain) : value.bytes;
-		if (bytes.size() != value.count * size)
-		{
-			fail(where, "an array that zlib cannot unpack", std::to_string(value.count) + " numbers");
-		}
+		failIf(bytes.size() != value.count * size, *this, where, "an array that zlib cannot unpack",
+			   std::to_string(value.count) + " numbers");
 		into.reserve(value.count);
 		for (const char* at = bytes.data(); at != bytes.data() + bytes.size(); at += size)
 		{
@@ -604,10 +575,7 @@ void FbxFile::decode(const FbxValue& value, const std::string& where, const char
 			}
 		}
 	}
-	if (into.size() != value.count)
-	{
-		fail(where, std::to_string(into.size()) + " numbers", std::to_string(value.count));
-	}
+	failIf(into.size() != value.count, *this, where, std::to_string(into.size()) + " numbers", std::to_string(value.count));
 }
 
 template <class T> std::vector<T> FbxFile::arrayOf(const FbxNode& node, const std::string& where) const
@@ -617,10 +585,8 @@ template <class T> std::vector<T> FbxFile::arrayOf(const FbxNode& node, const st
 	std::vector<double> numbers;
 	for (const FbxValue& value : node.values)
 	{
-		if (node.values.size() > 1 && value.kind == FbxValue::Kind::array)
-		{
-			fail(where, "an array among other values", "one array");
-		}
+		failIf(node.values.size() > 1 && value.kind == FbxValue::Kind::array, *this, where, "an array among other values",
+			   "one array");
 		decode(value, where, what, numbers);
 	}
 	if constexpr (!kWhole)

@@ -50,11 +50,7 @@ struct GBufferFile
 // For errors: six digits, or the name of a non-finite value.
 std::string shortText(double value)
 {
-	if (!std::isfinite(value))
-	{
-		return std::isnan(value) ? "NaN" : value > 0.0 ? "infinity" : "-infinity";
-	}
-	return roundedText(value, 6);
+	return std::isfinite(value) ? roundedText(value, 6) : std::isnan(value) ? "NaN" : value > 0.0 ? "infinity" : "-infinity";
 }
 
 ImageMatrix imageMatrix(const std::string& key, const glm::dmat4& m, bool wide)
@@ -72,10 +68,7 @@ glm::dmat4 matrixOf(const ImageMatrix& matrix)
 Image readWhole(const std::string& path)
 {
 	Image image = readImage(path);
-	if (image.cropped)
-	{
-		refuseInput(path + ": data window", "one that differs from the display window", "equal windows");
-	}
+	refuseInputIf(image.cropped, path + ": data window", "one that differs from the display window", "equal windows");
 	return image;
 }
 
@@ -83,11 +76,9 @@ Image readWhole(const std::string& path)
 void crop(Image& image, const std::string& path, const std::array<int, 4>& viewport)
 {
 	const auto [x, y, width, height] = viewport;
-	if (x < 0 || y < 0 || width < 1 || height < 1 || x > image.width_px - width || y > image.height_px - height)
-	{
-		refuseInput(path, std::to_string(image.width_px) + " x " + std::to_string(image.height_px) + " pixels",
-					"all of the rectangle among them (viewport)");
-	}
+	refuseInputIf(x < 0 || y < 0 || width < 1 || height < 1 || x > image.width_px - width || y > image.height_px - height, path,
+				  std::to_string(image.width_px) + " x " + std::to_string(image.height_px) + " pixels",
+				  "all of the rectangle among them (viewport)");
 	const auto channels = static_cast<std::ptrdiff_t>(image.channels.size());
 	std::vector<float> values;
 	for (int row = y; row < y + height; ++row)
@@ -137,11 +128,9 @@ void checkRigid(const GBufferFile& file, const glm::dmat4& m)
 	}
 	const bool finite = std::isfinite(glm::dot(m[3], m[3]));
 	// 1e-3 accepts matrices that went through half floats, but not a scale of a per cent.
-	if (!finite || !(off < 1e-3) || glm::determinant(turn) < 0.0)
-	{
-		file.refuse("worldToCamera", finite && off < 1e-3 ? "a mirrored matrix" : "one that is not a rotation and a translation",
-					"a motion in metres, column by column, into a right-handed view space that looks down -z (world-to-camera)");
-	}
+	refuseInputIf(!finite || !(off < 1e-3) || glm::determinant(turn) < 0.0, file.path + ": worldToCamera",
+				  finite && off < 1e-3 ? "a mirrored matrix" : "one that is not a rotation and a translation",
+				  "a motion in metres, column by column, into a right-handed view space that looks down -z (world-to-camera)");
 }
 
 Projector projectorFor(const GBufferFile& file, const glm::dmat4& projection)
@@ -185,9 +174,9 @@ Name partsOf(const std::string& channel)
 	return {layer, lowered(channel.substr(dot + 1)), lowered(earlier == std::string::npos ? layer : layer.substr(earlier + 1))};
 }
 
-[[noreturn]] void refuse(const Image& image, const std::string& path, const std::string& expected)
+void refuseChannelsIf(bool condition, const Image& image, const std::string& path, const std::string& expected)
 {
-	refuseInput(path + ": channels", joinedText(image.channels, ", "), expected);
+	refuseInputIf(condition, path + ": channels", joinedText(image.channels, ", "), expected);
 }
 
 std::optional<NormalChannels> vectorOf(const Image& image, const std::string& layer)
@@ -213,11 +202,8 @@ int depthRank(const Image& image, const std::string& channel)
 {
 	const Name name = partsOf(channel);
 	const bool scalar = name.last == "z" || name.last == "v" || name.last == "y" || name.last == "r";
-	if (name.last == "depth" || (name.before == "depth" && scalar))
-	{
-		return 1;
-	}
-	return name.last == "z" && !vectorOf(image, name.layer) ? 2 : 0;
+	const bool named = name.last == "depth" || (name.before == "depth" && scalar);
+	return named ? 1 : name.last == "z" && !vectorOf(image, name.layer) ? 2 : 0;
 }
 
 // The index of the only channel with that rank; −1: none, −2: several.
@@ -266,10 +252,7 @@ NormalChannels normalChannels(const Image& image, const std::string& path, const
 	if (!wanted.empty())
 	{
 		const std::optional<NormalChannels> found = vectorOf(image, wanted);
-		if (!found)
-		{
-			refuse(image, path, wanted + ".X, " + wanted + ".Y and " + wanted + ".Z among them");
-		}
+		refuseChannelsIf(!found, image, path, wanted + ".X, " + wanted + ".Y and " + wanted + ".Z among them");
 		return *found;
 	}
 	if (const std::optional<NormalChannels> found = vectorOf(image, "N"))
@@ -277,12 +260,9 @@ NormalChannels normalChannels(const Image& image, const std::string& path, const
 		return *found;
 	}
 	const std::vector<NormalChannels> layers = normalLayers(image);
-	if (layers.size() != 1)
-	{
-		refuse(image, path,
-			   layers.empty() ? "normals N.X, N.Y, N.Z (normal-channels names others), or from depth (normals from-depth)"
-							  : "one layer of normals alone (normal-channels picks one)");
-	}
+	refuseChannelsIf(layers.size() != 1, image, path,
+					 layers.empty() ? "normals N.X, N.Y, N.Z (normal-channels names others), or from depth (normals from-depth)"
+									: "one layer of normals alone (normal-channels picks one)");
 	return layers.front();
 }
 
@@ -585,10 +565,7 @@ int depthChannel(const Image& image, const std::string& path, const std::string&
 	if (!wanted.empty())
 	{
 		const int index = image.channel(wanted);
-		if (index < 0)
-		{
-			refuse(image, path, wanted + " among them");
-		}
+		refuseChannelsIf(index < 0, image, path, wanted + " among them");
 		return index;
 	}
 	const int index = depthByName(image);
@@ -596,12 +573,10 @@ int depthChannel(const Image& image, const std::string& path, const std::string&
 	{
 		return index;
 	}
-	if (index == -1 && image.channels.size() == 1)
-	{
-		return 0;
-	}
-	refuse(image, path,
-		   std::string(index == -2 ? "one alone" : "one") + " that is depth by its name, such as Z (depth-channel picks one)");
+	refuseChannelsIf(index != -1 || image.channels.size() != 1, image, path,
+					 std::string(index == -2 ? "one alone" : "one") +
+						 " that is depth by its name, such as Z (depth-channel picks one)");
+	return 0;
 }
 
 bool looksLikeGBuffer(const Image& image)

@@ -81,10 +81,8 @@ public:
 		take("_BENT_NORMAL", m_bake.bent, 3, false, 0.0F);
 		take("_BENT_NORMAL_BACK", m_bake.bent_back, 3, true, 0.0F);
 		take("", m_bake.uvs, 2, false, 0.0F);
-		if (m_colors && m_editor.earlier.starts_with("color"))
-		{
-			m_editor.fail("COLOR_0", "an earlier bake in a file that was changed since", "the file before that bake");
-		}
+		failIf(m_colors && m_editor.earlier.starts_with("color"), m_editor, "COLOR_0",
+			   "an earlier bake in a file that was changed since", "the file before that bake");
 	}
 
 	void check(std::span<const GltfPlace> places)
@@ -101,11 +99,8 @@ public:
 		for (const GltfPlace& place : places)
 		{
 			const std::string where = "nodes[" + std::to_string(place.node) + "]";
-			if (own_vertices && place.instance)
-			{
-				m_editor.fail(where, "instances by EXT_mesh_gpu_instancing",
-							  "nodes with a mesh each, since instances share their vertices", ExitCode::unsupported);
-			}
+			failIf(own_vertices && place.instance, m_editor, where, "instances by EXT_mesh_gpu_instancing",
+				   "nodes with a mesh each, since instances share their vertices", ExitCode::unsupported);
 			const Document& node = m_editor.items("nodes")[place.node];
 			if (m_bake.instances == BakeInstances::attribute && m_placements[numberIn(node, "mesh")] > 1 && !place.instance &&
 				!node.value("extras", Document::object()).is_object())
@@ -187,12 +182,10 @@ private:
 		{
 			const std::size_t mesh = m_editor.items("nodes")[place.node]["mesh"].get<std::size_t>();
 			const Document& primitives = m_editor.items("meshes")[mesh]["primitives"];
-			if (place.primitive >= primitives.size() ||
-				numberIn(m_editor.items("accessors")[numberIn(primitives[place.primitive]["attributes"], "POSITION")], "count") !=
-					place.count)
-			{
-				m_editor.fail("asset.extras.nook", "a bake that split vertices", "the file before it");
-			}
+			failIf(place.primitive >= primitives.size() ||
+					   numberIn(m_editor.items("accessors")[numberIn(primitives[place.primitive]["attributes"], "POSITION")],
+								"count") != place.count,
+				   m_editor, "asset.extras.nook", "a bake that split vertices", "the file before it");
 			const std::size_t node = m_bake.instances == BakeInstances::separate ? place.node : 0;
 			const auto [at, is_new] = known.try_emplace({mesh, node}, units.size());
 			if (is_new)

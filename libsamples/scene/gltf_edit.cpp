@@ -112,10 +112,8 @@ GltfEditor::GltfEditor(const GltfFile& of, const std::string& output) : file(of)
 	assert(m_to_binary || !file.is_binary);
 	checkGltf(file);
 	json = Document::parse(of.text);
-	if (!json["asset"].value("extras", Document::object()).is_object())
-	{
-		fail("asset.extras", "no object", "one, or nothing", ExitCode::unsupported);
-	}
+	failIf(!json["asset"].value("extras", Document::object()).is_object(), *this, "asset.extras", "no object", "one, or nothing",
+		   ExitCode::unsupported);
 	m_has_lines = file.text.find('\n') < file.text.size() - 1; // some programs end their one line
 	earlier = undoBake(file);
 	json = Document::parse(file.text);
@@ -245,10 +243,8 @@ std::size_t GltfEditor::addAccessor(const std::string& type, uint64_t component,
 		known->second = addView(is_indices ? Document{{"target", 34963U}} : Document{{"byteStride", size}, {"target", 34962U}}, {});
 	}
 	std::string& to = m_added[known->second - m_view_before];
-	if (bytes.size() > kMaxFileBytes - std::min(kMaxFileBytes, to.size()))
-	{
-		fail("", "more than 1 GiB of values", "less, as with --instances shared", ExitCode::unsupported);
-	}
+	failIf(bytes.size() > kMaxFileBytes - std::min(kMaxFileBytes, to.size()), *this, "", "more than 1 GiB of values",
+		   "less, as with --instances shared", ExitCode::unsupported);
 	items("accessors")
 		.push_back({{"bufferView", known->second},
 					{"byteOffset", to.size()},

@@ -66,10 +66,7 @@ MeshoptView meshoptViewOf(const JsonValue& extension, std::size_t index)
 	view.count = extension.at("count").whole(kMostBytes);
 	view.stride = extension.at("byteStride").whole(256);
 	const std::size_t mode = wordIn(extension, "mode", kModes);
-	if (mode == 0)
-	{
-		extension.fail("mode", "none", "ATTRIBUTES, TRIANGLES or INDICES");
-	}
+	failIf(mode == 0, extension, "mode", "none", "ATTRIBUTES, TRIANGLES or INDICES");
 	view.mode = static_cast<MeshoptView::Mode>(mode - 1);
 	view.filter = static_cast<MeshoptView::Filter>(wordIn(extension, "filter", kFilters));
 	const bool attributes = view.mode == MeshoptView::Mode::attributes;
@@ -80,11 +77,9 @@ MeshoptView meshoptViewOf(const JsonValue& extension, std::size_t index)
 		(attributes && (view.filter == MeshoptView::Filter::exponential  ? true
 						: view.filter == MeshoptView::Filter::quaternion ? view.stride == 8
 																		 : view.stride == 4 || view.stride == 8));
-	if (!good_stride || !good_count || !good_filter)
-	{
-		extension.fail("", std::to_string(view.count) + " elements, " + std::to_string(view.stride) + " bytes apart",
-					   "what its mode and filter allow");
-	}
+	failIf(!good_stride || !good_count || !good_filter, extension, "",
+		   std::to_string(view.count) + " elements, " + std::to_string(view.stride) + " bytes apart",
+		   "what its mode and filter allow");
 	return view;
 }
 
@@ -95,18 +90,11 @@ std::string_view codedOf(GltfFile& file, const JsonValue& extension, const Mesho
 	const uint64_t offset = extension.whole("byteOffset", kMostBytes).value_or(0);
 	const uint64_t length = extension.at("byteLength").whole(kMostBytes);
 	const JsonValue holder = file.root().item("buffers", buffer);
-	if (isFallbackBuffer(holder) || offset + length > holder.at("byteLength").whole(kMostBytes))
-	{
-		extension.fail("byteLength", "bytes " + std::to_string(offset) + " to " + std::to_string(offset + length),
-					   "bytes that its buffer holds");
-	}
-	if (view.count * view.stride > kMostPerByte * length + kSlack)
-	{
-		extension.fail("count",
-					   std::to_string(view.count) + " of " + std::to_string(view.stride) + " bytes, made of " +
-						   std::to_string(length),
-					   "at most " + std::to_string(kMostPerByte) + " times as many");
-	}
+	failIf(isFallbackBuffer(holder) || offset + length > holder.at("byteLength").whole(kMostBytes), extension, "byteLength",
+		   "bytes " + std::to_string(offset) + " to " + std::to_string(offset + length), "bytes that its buffer holds");
+	failIf(view.count * view.stride > kMostPerByte * length + kSlack, extension, "count",
+		   std::to_string(view.count) + " of " + std::to_string(view.stride) + " bytes, made of " + std::to_string(length),
+		   "at most " + std::to_string(kMostPerByte) + " times as many");
 	return bufferBytes(file, buffer, static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
 }
 
@@ -129,11 +117,8 @@ bool expandMeshopt(GltfFile& file)
 		coded.push_back(codedOf(file, *extension, views.back()));
 		bytes += coded.back().size();
 		made += views.back().count * views.back().stride;
-		if (made > 2 * kMaxFileBytes)
-		{
-			extension->fail("count", std::to_string(made) + " bytes of views so far",
-							"at most " + std::to_string(2 * kMaxFileBytes));
-		}
+		failIf(made > 2 * kMaxFileBytes, *extension, "count", std::to_string(made) + " bytes of views so far",
+			   "at most " + std::to_string(2 * kMaxFileBytes));
 	}
 	if (views.empty())
 	{
@@ -223,11 +208,9 @@ private:
 			return; // the uncompressed fallback is read
 		}
 		const std::string where = m_file.path + ": " + primitive.element;
-		if (!NOOK_HAS_DRACO)
-		{
-			refuseInput(where, "KHR_draco_mesh_compression, which this build does not support (Debian's package libdraco-dev)",
-						"what `gltf-transform copy IN.glb OUT.glb` makes of it", ExitCode::unsupported);
-		}
+		refuseInputIf(!NOOK_HAS_DRACO, where,
+					  "KHR_draco_mesh_compression, which this build does not support (Debian's package libdraco-dev)",
+					  "what `gltf-transform copy IN.glb OUT.glb` makes of it", ExitCode::unsupported);
 		const std::size_t view = extension->at("bufferView").indexInto(m_file.root().count("bufferViews"));
 		DracoMesh made;
 		made.where = where;
@@ -260,11 +243,9 @@ private:
 			attribute.id = static_cast<uint32_t>(ids.at(name).whole(UINT32_MAX));
 			attribute.component = static_cast<uint32_t>(item.at("componentType").whole(UINT16_MAX));
 			attribute.components = static_cast<uint32_t>(componentsOf(item.text("type")));
-			if (attribute.components == 0 || attribute.components > 4 || bytesOfComponent(attribute.component) == 0)
-			{
-				item.fail("type", "\"" + item.text("type") + "\" of " + std::to_string(attribute.component),
-						  "SCALAR to VEC4 of 5120 to 5126");
-			}
+			failIf(attribute.components == 0 || attribute.components > 4 || bytesOfComponent(attribute.component) == 0, item,
+				   "type", "\"" + item.text("type") + "\" of " + std::to_string(attribute.component),
+				   "SCALAR to VEC4 of 5120 to 5126");
 			made.attributes.push_back(attribute);
 			made.accessors.push_back(accessor);
 		}

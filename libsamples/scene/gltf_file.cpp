@@ -24,18 +24,11 @@ constexpr uint32_t kBinChunk = 0x004E4942;  // "BIN\0"
 std::string takeChunks(std::string bytes, GltfFile& file)
 {
 	const std::string header = file.path + ": header";
-	if (bytes.size() < 20 || littleEndian(bytes, 0, 4) != kGlbMagic)
-	{
-		refuseInput(header, std::to_string(bytes.size()) + " bytes that are not a binary glTF", "\"glTF\" first");
-	}
-	if (littleEndian(bytes, 4, 4) != 2)
-	{
-		refuseInput(header, "version " + std::to_string(littleEndian(bytes, 4, 4)), "2");
-	}
-	if (littleEndian(bytes, 8, 4) > bytes.size())
-	{
-		refuseInput(header, std::to_string(bytes.size()) + " bytes", std::to_string(littleEndian(bytes, 8, 4)));
-	}
+	refuseInputIf(bytes.size() < 20 || littleEndian(bytes, 0, 4) != kGlbMagic, header,
+				  std::to_string(bytes.size()) + " bytes that are not a binary glTF", "\"glTF\" first");
+	refuseInputIf(littleEndian(bytes, 4, 4) != 2, header, "version " + std::to_string(littleEndian(bytes, 4, 4)), "2");
+	refuseInputIf(littleEndian(bytes, 8, 4) > bytes.size(), header, std::to_string(bytes.size()) + " bytes",
+				  std::to_string(littleEndian(bytes, 8, 4)));
 	const std::size_t end = littleEndian(bytes, 8, 4);
 	std::string json;
 	std::size_t chunk_at = 0;
@@ -46,14 +39,9 @@ std::string takeChunks(std::string bytes, GltfFile& file)
 		const std::size_t size = littleEndian(bytes, at, 4);
 		const uint64_t kind = littleEndian(bytes, at + 4, 4);
 		at += 8;
-		if (size > end - at)
-		{
-			refuseInput(file.path + ": chunk " + std::to_string(chunk), std::to_string(end - at) + " bytes", std::to_string(size));
-		}
-		if (chunk == 0 && kind != kJsonChunk)
-		{
-			refuseInput(file.path + ": chunk 0", "another type", "JSON");
-		}
+		refuseInputIf(size > end - at, file.path + ": chunk " + std::to_string(chunk), std::to_string(end - at) + " bytes",
+					  std::to_string(size));
+		refuseInputIf(chunk == 0 && kind != kJsonChunk, file.path + ": chunk 0", "another type", "JSON");
 		if (chunk == 0)
 		{
 			json = bytes.substr(at, size);
@@ -99,10 +87,7 @@ void checkText(const std::string& text, const std::string& path)
 		in_text = c == '"';
 		values += c == ',' || c == '[' || c == '{' ? 1 : 0; // each starts at most one
 	}
-	if (values > kMost)
-	{
-		refuseInput(path + ": JSON", std::to_string(values) + " values", "at most " + std::to_string(kMost));
-	}
+	refuseInputIf(values > kMost, path + ": JSON", std::to_string(values) + " values", "at most " + std::to_string(kMost));
 }
 
 void parseText(GltfFile& file)
@@ -181,19 +166,14 @@ private:
 	void head() const
 	{
 		const std::string version = m_root.objectNeeded("asset").text("version");
-		if (!version.starts_with("2."))
-		{
-			m_root.fail("asset.version", "\"" + version + "\"", "\"2.0\"");
-		}
+		failIf(!version.starts_with("2."), m_root, "asset.version", "\"" + version + "\"", "\"2.0\"");
 		for (const std::string& name : m_root.texts("extensionsRequired"))
 		{
-			if (!name.starts_with("KHR_materials_") &&
-				std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) == kKnownExtensions.end())
-			{
-				refuseInput(m_file.path + ": extensionsRequired", "\"" + name + "\"",
-							"a file that can be read without it, as `gltf-transform copy IN.glb OUT.glb` may make one",
-							ExitCode::unsupported);
-			}
+			refuseInputIf(!name.starts_with("KHR_materials_") &&
+							  std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) == kKnownExtensions.end(),
+						  m_file.path + ": extensionsRequired", "\"" + name + "\"",
+						  "a file that can be read without it, as `gltf-transform copy IN.glb OUT.glb` may make one",
+						  ExitCode::unsupported);
 		}
 	}
 
@@ -221,15 +201,9 @@ private:
 				item.fail("uri", "nothing", "a file's name or data");
 			}
 			m_buffer_bytes += held; // files are read whole
-			if (m_buffer_bytes > 2 * kMaxFileBytes)
-			{
-				item.fail("byteLength", std::to_string(m_buffer_bytes) + " bytes of buffers so far",
-						  "at most " + std::to_string(2 * kMaxFileBytes));
-			}
-			if (held < length)
-			{
-				item.fail("byteLength", std::to_string(held) + " bytes", std::to_string(length));
-			}
+			failIf(m_buffer_bytes > 2 * kMaxFileBytes, item, "byteLength",
+				   std::to_string(m_buffer_bytes) + " bytes of buffers so far", "at most " + std::to_string(2 * kMaxFileBytes));
+			failIf(held < length, item, "byteLength", std::to_string(held) + " bytes", std::to_string(length));
 		}
 	}
 
@@ -244,10 +218,7 @@ private:
 		std::error_code failed;
 		const bool regular = std::filesystem::is_regular_file(nativePath(path), failed);
 		const uint64_t size = regular ? std::filesystem::file_size(nativePath(path), failed) : 0;
-		if (!regular || failed)
-		{
-			refuseInput(m_file.path + ": " + item.element, "no file " + path, "the level's data", ExitCode::file);
-		}
+		refuseInputIf(!regular || failed, m_file.path + ": " + item.element, "no file " + path, "the level's data", ExitCode::file);
 		checkInside(m_file.path, item.element + ".uri", path, m_file.settings);
 		addFile(m_file.files, path);
 		return size;
@@ -261,19 +232,15 @@ private:
 			const std::size_t index = item.at("buffer").indexInto(m_buffers.size());
 			const uint64_t buffer = m_buffers[index];
 			const std::optional<JsonValue> extensions = item.object("extensions");
-			if (isFallbackBuffer(m_root.item("buffers", index)) && !(extensions && extensions->has("EXT_meshopt_compression")))
-			{
-				item.fail("buffer", "one that EXT_meshopt_compression decodes into", "one that holds bytes");
-			}
+			failIf(isFallbackBuffer(m_root.item("buffers", index)) && !(extensions && extensions->has("EXT_meshopt_compression")),
+				   item, "buffer", "one that EXT_meshopt_compression decodes into", "one that holds bytes");
 			BufferView view;
 			const uint64_t offset = item.whole("byteOffset", kMaxBytes).value_or(0);
 			view.length = item.at("byteLength").whole(kMaxBytes);
 			view.stride = item.whole("byteStride", 252).value_or(0);
-			if (offset + view.length > buffer)
-			{
-				item.fail("byteLength", "bytes " + std::to_string(offset) + " to " + std::to_string(offset + view.length),
-						  "an end by byte " + std::to_string(buffer));
-			}
+			failIf(offset + view.length > buffer, item, "byteLength",
+				   "bytes " + std::to_string(offset) + " to " + std::to_string(offset + view.length),
+				   "an end by byte " + std::to_string(buffer));
 			m_views.push_back(view);
 		}
 	}
@@ -284,11 +251,9 @@ private:
 		const BufferView& view = m_views[item.at("bufferView").indexInto(m_views.size())];
 		const uint64_t stride = view.stride == 0 ? size : view.stride;
 		const uint64_t end = count == 0 ? offset : offset + stride * (count - 1) + size;
-		if (end > view.length || stride < size)
-		{
-			item.fail("bufferView", "a view of " + std::to_string(view.length) + " bytes, " + std::to_string(stride) + " apart",
-					  std::to_string(end) + " bytes, at least " + std::to_string(size) + " apart");
-		}
+		failIf(end > view.length || stride < size, item, "bufferView",
+			   "a view of " + std::to_string(view.length) + " bytes, " + std::to_string(stride) + " apart",
+			   std::to_string(end) + " bytes, at least " + std::to_string(size) + " apart");
 	}
 
 	void accessors()
@@ -300,11 +265,8 @@ private:
 			accessor.component = item.at("componentType").whole(UINT16_MAX);
 			accessor.count = item.at("count").whole(kMaxVertices);
 			const uint64_t size = componentsOf(accessor.type) * bytesOfComponent(accessor.component);
-			if (size == 0)
-			{
-				item.fail("type", "\"" + accessor.type + "\" of " + std::to_string(accessor.component),
-						  "SCALAR to MAT4 of 5120 to 5126");
-			}
+			failIf(size == 0, item, "type", "\"" + accessor.type + "\" of " + std::to_string(accessor.component),
+				   "SCALAR to MAT4 of 5120 to 5126");
 			if (item.has("bufferView"))
 			{
 				range(item, item.whole("byteOffset", kMaxBytes).value_or(0), accessor.count, size);
@@ -318,10 +280,7 @@ private:
 				const uint64_t count = sparse->at("count").whole(accessor.count);
 				const JsonValue indices = sparse->objectNeeded("indices");
 				const uint64_t component = indices.at("componentType").whole(UINT16_MAX);
-				if (!isIndex(component))
-				{
-					indices.fail("componentType", std::to_string(component), "5121, 5123 or 5125");
-				}
+				failIf(!isIndex(component), indices, "componentType", std::to_string(component), "5121, 5123 or 5125");
 				range(indices, indices.whole("byteOffset", kMaxBytes).value_or(0), count, bytesOfComponent(component));
 				const JsonValue values = sparse->objectNeeded("values");
 				range(values, values.whole("byteOffset", kMaxBytes).value_or(0), count, size);
@@ -339,10 +298,8 @@ private:
 	const Accessor& attribute(const JsonValue& item, std::string_view field, std::string_view types) const
 	{
 		const Accessor& accessor = m_accessors[item.at(field).indexInto(m_accessors.size())];
-		if (types.find(accessor.type) == std::string_view::npos)
-		{
-			item.fail(field, "an accessor of type " + accessor.type, std::string(types));
-		}
+		failIf(types.find(accessor.type) == std::string_view::npos, item, field, "an accessor of type " + accessor.type,
+			   std::string(types));
 		return accessor;
 	}
 
@@ -376,18 +333,13 @@ private:
 		if (item.has("indices"))
 		{
 			const Accessor& indices = attribute(item, "indices", "SCALAR");
-			if (!isIndex(indices.component))
-			{
-				item.fail("indices", "an accessor of component type " + std::to_string(indices.component), "5121, 5123 or 5125");
-			}
+			failIf(!isIndex(indices.component), item, "indices",
+				   "an accessor of component type " + std::to_string(indices.component), "5121, 5123 or 5125");
 			m_used += indices.count;
 		}
 		// Primitives may share data: this many cost time and memory even before counting instances.
-		if (m_used > 2 * kMaxVertices)
-		{
-			item.fail("", std::to_string(m_used) + " vertices and indices of primitives so far",
-					  "at most " + std::to_string(2 * kMaxVertices));
-		}
+		failIf(m_used > 2 * kMaxVertices, item, "", std::to_string(m_used) + " vertices and indices of primitives so far",
+			   "at most " + std::to_string(2 * kMaxVertices));
 		for (const JsonValue& target : item.objects("targets"))
 		{
 			for (const char* const name : {"POSITION", "NORMAL", "TANGENT"})
@@ -487,15 +439,10 @@ private:
 				}
 			}
 			std::sort(roots.begin(), roots.end());
-			if (std::adjacent_find(roots.begin(), roots.end()) != roots.end())
-			{
-				scene.fail("nodes", "a node twice", "every node once");
-			}
+			failIf(std::adjacent_find(roots.begin(), roots.end()) != roots.end(), scene, "nodes", "a node twice",
+				   "every node once");
 		}
-		if (m_root.count("scenes") == 0)
-		{
-			m_root.fail("scenes", "none", "a scene, that says which nodes are in the level");
-		}
+		failIf(m_root.count("scenes") == 0, m_root, "scenes", "none", "a scene, that says which nodes are in the level");
 	}
 
 	GltfFile& m_file;
@@ -527,10 +474,7 @@ GltfFile openGltf(const std::string& path)
 	{
 		return openGlb(std::move(text), path);
 	}
-	if (text.starts_with("glTF"))
-	{
-		refuseInput(path + ": header", "a binary glTF", "the ending .glb of one, or text");
-	}
+	refuseInputIf(text.starts_with("glTF"), path + ": header", "a binary glTF", "the ending .glb of one, or text");
 	GltfFile file;
 	file.path = path;
 	file.text = std::move(text);
@@ -545,10 +489,8 @@ std::optional<std::string> dataOf(const std::string& uri, const JsonValue& item)
 		return std::nullopt;
 	}
 	const std::size_t comma = uri.find(',');
-	if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
-	{
-		item.fail("uri", "data that is not base64", "\"data:...;base64,...\"");
-	}
+	failIf(comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64"), item, "uri",
+		   "data that is not base64", "\"data:...;base64,...\"");
 	std::string text = uri.substr(comma + 1);
 	text.append((4 - text.size() % 4) % 4, '='); // some writers omit the padding
 	const std::optional<std::vector<uint8_t>> bytes = bytesOfBase64(text);
@@ -581,10 +523,7 @@ std::string_view bufferBytes(GltfFile& file, std::size_t buffer, std::size_t off
 		bytes = dataOf(uri, holder);
 		bytes = bytes ? std::move(bytes) : readFile(besideLevel(file.path, unescaped(uri)));
 	}
-	if (bytes->size() < offset + length)
-	{
-		holder.fail("uri", std::to_string(bytes->size()) + " bytes", "what it had a moment ago");
-	}
+	failIf(bytes->size() < offset + length, holder, "uri", std::to_string(bytes->size()) + " bytes", "what it had a moment ago");
 	return std::string_view(*bytes).substr(offset, length);
 }
 

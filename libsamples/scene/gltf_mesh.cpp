@@ -118,11 +118,8 @@ private:
 		{
 			return nullptr;
 		}
-		if (found->count() != primitive.positions->count())
-		{
-			attributes.fail(name, std::to_string(found->count()) + " values",
-							std::to_string(primitive.positions->count()) + ", as many as positions");
-		}
+		failIf(found->count() != primitive.positions->count(), attributes, name, std::to_string(found->count()) + " values",
+			   std::to_string(primitive.positions->count()) + ", as many as positions");
 		if (const std::string held = accessorOf(attributes, name).text("type"); !type.empty() && held != type)
 		{
 			attributes.fail(name, "an accessor of type " + held, std::string(type));
@@ -149,14 +146,9 @@ private:
 			const std::string joints = "JOINTS_" + std::to_string(i);
 			const std::string weights = "WEIGHTS_" + std::to_string(i);
 			const uint64_t component = accessorOf(attributes, joints).at("componentType").whole(UINT16_MAX);
-			if (component != 5121 && component != 5123)
-			{
-				attributes.fail(joints, "an accessor of component type " + std::to_string(component), "5121 or 5123");
-			}
-			if (!attributes.has(weights))
-			{
-				attributes.fail(weights, "none", "one for each of " + joints);
-			}
+			failIf(component != 5121 && component != 5123, attributes, joints,
+				   "an accessor of component type " + std::to_string(component), "5121 or 5123");
+			failIf(!attributes.has(weights), attributes, weights, "none", "one for each of " + joints);
 			pose.joints.emplace_back(vertexValues(attributes, joints, primitive, "VEC4"),
 									 vertexValues(attributes, weights, primitive, "VEC4"));
 		}
@@ -323,11 +315,8 @@ private:
 			}
 		}
 		checkCounts(m_file.path, triangles, vertices, ", counting every instance");
-		if (meshes > kMaxMeshes)
-		{
-			refuseInput(m_file.path, std::to_string(meshes) + " primitives, counting every instance",
-						"at most " + std::to_string(kMaxMeshes));
-		}
+		refuseInputIf(meshes > kMaxMeshes, m_file.path, std::to_string(meshes) + " primitives, counting every instance",
+					  "at most " + std::to_string(kMaxMeshes));
 	}
 
 	std::optional<std::size_t> meshOf(const PlacedNode& node) const

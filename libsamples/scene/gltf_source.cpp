@@ -72,10 +72,8 @@ public:
 				made.occlusion_set = static_cast<uint32_t>(occlusion->whole("texCoord", UINT32_MAX).value_or(0));
 			}
 			const std::string mode = item.text("alphaMode", "OPAQUE");
-			if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND")
-			{
-				item.fail("alphaMode", "\"" + mode + "\"", "OPAQUE, MASK or BLEND");
-			}
+			failIf(mode != "OPAQUE" && mode != "MASK" && mode != "BLEND", item, "alphaMode", "\"" + mode + "\"",
+				   "OPAQUE, MASK or BLEND");
 			made.material.alpha_mode = mode == "MASK" ? AlphaMode::mask : mode == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
 			if (mode == "BLEND")
 			{
@@ -259,10 +257,7 @@ private:
 		made.name = node.has("name") ? node.text("name") : camera.text("name");
 		made.world_from_camera = world;
 		const std::string type = camera.text("type");
-		if (type != "perspective" && type != "orthographic")
-		{
-			camera.fail("type", "\"" + type + "\"", "perspective or orthographic");
-		}
+		failIf(type != "perspective" && type != "orthographic", camera, "type", "\"" + type + "\"", "perspective or orthographic");
 		const JsonValue lens = camera.objectNeeded(type);
 		made.lens.orthographic = type == "orthographic";
 		made.lens.near_m = lens.at("znear").number();
@@ -278,10 +273,8 @@ private:
 		}
 		const bool sees = made.lens.orthographic ? made.lens.half_height_m != 0.0
 												 : made.lens.near_m > 0.0 && made.lens.fov_y_rad > 0.0 && made.lens.fov_y_rad < kPi;
-		if (!sees || !(made.lens.far_m > made.lens.near_m))
-		{
-			lens.fail("", "a lens that sees nothing", "0 < yfov < pi, ymag other than 0, and 0 < znear < zfar");
-		}
+		failIf(!sees || !(made.lens.far_m > made.lens.near_m), lens, "", "a lens that sees nothing",
+			   "0 < yfov < pi, ymag other than 0, and 0 < znear < zfar");
 		made.lens.half_height_m = std::fabs(made.lens.half_height_m);
 		m_source.cameras.push_back(made);
 	}

@@ -122,10 +122,8 @@ private:
 	{
 		const std::size_t number = numberIn(m_editor.items("textures")[texture], "source");
 		const std::string where = "textures[" + std::to_string(texture) + "]";
-		if (number == kNoNumber)
-		{
-			m_editor.fail(where, "no image of the core format", "a PNG or JPEG for the red channel", ExitCode::unsupported);
-		}
+		failIf(number == kNoNumber, m_editor, where, "no image of the core format", "a PNG or JPEG for the red channel",
+			   ExitCode::unsupported);
 		const JsonValue item = m_editor.file.root().item("images", number);
 		const std::string uri = item.text("uri");
 		const std::string path = uri.empty() || uri.starts_with("data:") ? "" : besideLevel(m_editor.file.path, unescaped(uri));
@@ -209,11 +207,9 @@ private:
 				set = std::max(set, firstFreeSet(m_editor.primitiveOf(unit.mesh, primitive)["attributes"]));
 			}
 		}
-		if (set > kMostSet)
-		{
-			m_editor.fail("meshes", "no free set of texture coordinates, with TEXCOORD_" + std::to_string(kMostSet) + " in use",
-						  "at most " + std::to_string(kMostSet) + " of them");
-		}
+		failIf(set > kMostSet, m_editor, "meshes",
+			   "no free set of texture coordinates, with TEXCOORD_" + std::to_string(kMostSet) + " in use",
+			   "at most " + std::to_string(kMostSet) + " of them");
 		return static_cast<std::size_t>(set);
 	}
 

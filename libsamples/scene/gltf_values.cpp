@@ -43,11 +43,9 @@ std::optional<GltfValues> attributeOf(GltfFile& file, const JsonValue& attribute
 	const JsonValue accessor = root.item("accessors", *index);
 	const uint64_t component = accessor.at("componentType").whole(UINT16_MAX);
 	const bool whole = (component == 5120 || component == 5122) && accessor.boolean("normalized", false);
-	if (accessor.text("type") != type || !(component == 5126 || (wide && whole)))
-	{
-		attributes.fail(name, "an accessor of type " + accessor.text("type") + " of " + std::to_string(component),
-						std::string(type) + (wide ? " of 5126, or of 5120 or 5122 normalised" : " of 5126"));
-	}
+	failIf(accessor.text("type") != type || !(component == 5126 || (wide && whole)), attributes, name,
+		   "an accessor of type " + accessor.text("type") + " of " + std::to_string(component),
+		   std::string(type) + (wide ? " of 5126, or of 5120 or 5122 normalised" : " of 5126"));
 	if (!accessor.has("bufferView"))
 	{
 		attributes.fail(name, "an accessor that no buffer holds",
@@ -191,21 +189,16 @@ const std::vector<glm::dmat4>& GltfPoses::jointsOf(std::size_t skin)
 	const JsonValue root = m_file.root();
 	const JsonValue item = root.item("skins", skin);
 	const std::vector<std::size_t> joints = item.indices("joints", m_file.parents.size());
-	if (joints.empty())
-	{
-		item.fail("joints", "none", "nodes that move the skin");
-	}
+	failIf(joints.empty(), item, "joints", "none", "nodes that move the skin");
 	std::optional<GltfValues> inverse;
 	if (const std::optional<std::size_t> accessor = item.index("inverseBindMatrices", root.count("accessors")))
 	{
 		const JsonValue matrices = root.item("accessors", *accessor);
 		inverse.emplace(m_file, *accessor);
-		if (matrices.text("type") != "MAT4" || matrices.at("componentType").whole(UINT16_MAX) != 5126 ||
-			inverse->count() < joints.size())
-		{
-			item.fail("inverseBindMatrices", std::to_string(inverse->count()) + " values of type " + matrices.text("type"),
-					  std::to_string(joints.size()) + " of type MAT4 of 5126, as many as joints");
-		}
+		failIf(matrices.text("type") != "MAT4" || matrices.at("componentType").whole(UINT16_MAX) != 5126 ||
+				   inverse->count() < joints.size(),
+			   item, "inverseBindMatrices", std::to_string(inverse->count()) + " values of type " + matrices.text("type"),
+			   std::to_string(joints.size()) + " of type MAT4 of 5126, as many as joints");
 	}
 	for (std::size_t i = 0; i < joints.size(); ++i)
 	{
@@ -311,20 +304,12 @@ std::optional<std::vector<glm::dmat4>> instancesOf(GltfFile& file, const JsonVal
 		// A custom attribute moves nothing, but determines the number of instances if it is the only one.
 		const std::size_t index = attributes.at(name).indexInto(file.root().count("accessors"));
 		const JsonValue accessor = file.root().item("accessors", index);
-		if (!count && !accessor.has("bufferView"))
-		{
-			attributes.fail(name, "an accessor that no buffer holds", "one of a bufferView");
-		}
+		failIf(!count && !accessor.has("bufferView"), attributes, name, "an accessor that no buffer holds", "one of a bufferView");
 		count = count ? *count : static_cast<std::size_t>(accessor.at("count").whole(UINT32_MAX));
 	}
-	if (!count)
-	{
-		attributes.fail("", "no attribute", "one at least, such as TRANSLATION");
-	}
-	if (*count > most)
-	{
-		attributes.fail("", std::to_string(*count) + " instances", "at most " + std::to_string(kMaxInstances) + " in the file");
-	}
+	failIf(!count, attributes, "", "no attribute", "one at least, such as TRANSLATION");
+	failIf(*count > most, attributes, "", std::to_string(*count) + " instances",
+		   "at most " + std::to_string(kMaxInstances) + " in the file");
 	std::vector<glm::dmat4> places;
 	places.reserve(*count);
 	for (std::size_t i = 0; i < *count; ++i)

@@ -429,11 +429,8 @@ private:
 
 	void addView(std::string& buffer, std::string& bytes)
 	{
-		if (bytes.size() > kMaxFileBytes - buffer.size())
-		{
-			refuseInput(m_level.name, std::to_string(m_level.triangles.size()) + " triangles", "what a file of 1 GiB holds",
-						ExitCode::unsupported);
-		}
+		refuseInputIf(bytes.size() > kMaxFileBytes - buffer.size(), m_level.name,
+					  std::to_string(m_level.triangles.size()) + " triangles", "what a file of 1 GiB holds", ExitCode::unsupported);
 		m_views.push_back({{"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", bytes.size()}});
 		buffer += bytes;
 		padTo4(buffer);
@@ -466,10 +463,8 @@ std::string glbContainer(std::string text, std::string_view chunk, std::string_v
 	text.resize((text.size() + 3) / 4 * 4, ' ');
 	const std::size_t padded = (chunk.size() + 3) / 4 * 4;
 	const std::size_t size = 12 + 8 + text.size() + (padded > 0 ? 8 + padded : 0) + others.size();
-	if (size > kMaxFileBytes)
-	{
-		refuseInput(name, "a file of " + std::to_string(size) + " bytes", "at most 1 GiB", ExitCode::unsupported);
-	}
+	refuseInputIf(size > kMaxFileBytes, name, "a file of " + std::to_string(size) + " bytes", "at most 1 GiB",
+				  ExitCode::unsupported);
 	std::string bytes = "glTF";
 	appendRaw(bytes, uint32_t{2});
 	appendRaw(bytes, static_cast<uint32_t>(size));

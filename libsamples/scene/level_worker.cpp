@@ -147,12 +147,10 @@ void decodeMeshopt(ValueReader& request, ValueWriter& answer)
 	std::vector<char> bytes;
 	for (std::size_t i = 0; i < views.size(); ++i)
 	{
-		if (!decodeView(views[i], coded[i], bytes))
-		{
-			refuseInput(name + ": bufferViews[" + std::to_string(views[i].index) + "].extensions.EXT_meshopt_compression",
-						"bytes that do not decode",
-						std::to_string(views[i].count) + " elements of " + std::to_string(views[i].stride) + " bytes");
-		}
+		refuseInputIf(!decodeView(views[i], coded[i], bytes),
+					  name + ": bufferViews[" + std::to_string(views[i].index) + "].extensions.EXT_meshopt_compression",
+					  "bytes that do not decode",
+					  std::to_string(views[i].count) + " elements of " + std::to_string(views[i].stride) + " bytes");
 		answer.values(bytes);
 		std::vector<unsigned char>().swap(coded[i]);
 	}

@@ -44,26 +44,16 @@ void checkReadable(const std::string& path)
 {
 	std::error_code failed;
 	const std::filesystem::file_status status = std::filesystem::status(nativePath(path), failed);
-	if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-	{
-		refuseInput(path + ": cannot be read", "a folder or device", "a file", ExitCode::file);
-	}
+	refuseInputIf(std::filesystem::exists(status) && !std::filesystem::is_regular_file(status), path + ": cannot be read",
+				  "a folder or device", "a file", ExitCode::file);
 	const std::uintmax_t size = std::filesystem::file_size(nativePath(path), failed);
-	if (!failed && size > kMaxFileBytes)
-	{
-		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(EFBIG));
-	}
+	refuseIf(!failed && size > kMaxFileBytes, path + ": cannot be read: " + std::strerror(EFBIG), ExitCode::file);
 	const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(openFile(path, "rb"), &std::fclose);
-	if (file == nullptr)
-	{
-		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(errno));
-	}
+	refuseIf(file == nullptr, path + ": cannot be read: " + std::strerror(errno), ExitCode::file);
 	std::array<unsigned char, 2> start{};
-	if (std::fread(start.data(), 1, start.size(), file.get()) == start.size() && endingOf(path) == ".obj" &&
-		((start[0] == 0xFE && start[1] == 0xFF) || (start[0] == 0xFF && start[1] == 0xFE)))
-	{
-		refuseInput(path, "UTF-16 text", "UTF-8");
-	}
+	refuseInputIf(std::fread(start.data(), 1, start.size(), file.get()) == start.size() && endingOf(path) == ".obj" &&
+					  ((start[0] == 0xFE && start[1] == 0xFF) || (start[0] == 0xFF && start[1] == 0xFE)),
+				  path, "UTF-16 text", "UTF-8");
 }
 
 bool isGltfName(const std::string& path)
@@ -87,10 +77,7 @@ Level readLevel(const std::string& path, const LoadSettings& settings, LevelSour
 		readGeometry(path, settings, source, level);
 	}
 	level.name = nativePath(path).filename().string();
-	if (level.triangles.empty())
-	{
-		refuseInput(path, "no triangle", "a surface");
-	}
+	refuseInputIf(level.triangles.empty(), path, "no triangle", "a surface");
 	finishMaterials(settings, source, level);
 	Tally missing;
 	const std::filesystem::path parent = nativePath(path).parent_path();
@@ -144,10 +131,7 @@ void ignoreParts(Level& level, const LoadSettings& settings)
 	std::vector<uint8_t> keep = chosenTriangles(level, settings.ignore, "ignore");
 	std::transform(keep.begin(), keep.end(), keep.begin(), [](uint8_t chosen) { return chosen == 0 ? 1 : 0; });
 	dropTriangles(level, keep);
-	if (level.triangles.empty())
-	{
-		refuseInput(level.name + ": ignore", "every part", "one that is left");
-	}
+	refuseInputIf(level.triangles.empty(), level.name + ": ignore", "every part", "one that is left");
 }
 
 // Cleans a level that was read again; returns the earlier index of each vertex.
@@ -181,17 +165,13 @@ Level readNamed(const std::string& name, const LoadSettings& settings, std::vect
 {
 	if (name.starts_with(kBuiltinPrefix))
 	{
-		if (settings.unit_m != 0.0 || settings.up != UpAxis::file)
-		{
-			throw Error(ExitCode::usage, std::string(settings.unit_m != 0.0 ? "unit" : "up") + ": found with " + name +
-											 ", which is in metres with y up, expected the file of a level");
-		}
+		refuseIf(settings.unit_m != 0.0 || settings.up != UpAxis::file,
+				 std::string(settings.unit_m != 0.0 ? "unit" : "up") + ": found with " + name +
+					 ", which is in metres with y up, expected the file of a level");
 		return builtinLevel(std::string_view(name).substr(kBuiltinPrefix.size()));
 	}
-	if (!isLevelName(name))
-	{
-		refuseInput(name, "the ending '" + endingOf(name) + "'", ".gltf, .glb, .obj, .fbx, .ply, .stl or builtin:NAME");
-	}
+	refuseInputIf(!isLevelName(name), name, "the ending '" + endingOf(name) + "'",
+				  ".gltf, .glb, .obj, .fbx, .ply, .stl or builtin:NAME");
 	LevelSource source;
 	Level level = readLevel(name, settings, source);
 	findings.insert(findings.begin(), source.findings.begin(),

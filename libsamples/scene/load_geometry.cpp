@@ -81,11 +81,9 @@ private:
 			made.material.two_sided = sent.two_sided;
 			made.material.colour = sent.colour;
 			made.uv_of_set = sent.opacity.name.empty() ? sent.picture.uv_of_set : sent.opacity.uv_of_set;
-			if (!std::isfinite(made.material.alpha) || made.material.alpha < 0.0 || made.material.alpha > 1.0)
-			{
-				refuseInput(m_path + ": material '" + made.material.name + "'",
-							"an opacity of " + std::to_string(made.material.alpha), "0 to 1");
-			}
+			refuseInputIf(!std::isfinite(made.material.alpha) || made.material.alpha < 0.0 || made.material.alpha > 1.0,
+						  m_path + ": material '" + made.material.name + "'",
+						  "an opacity of " + std::to_string(made.material.alpha), "0 to 1");
 			if (!sent.opacity.name.empty())
 			{
 				made.material.alpha_mode = AlphaMode::mask;
@@ -231,10 +229,8 @@ void checkThere(const LoadSettings& settings, const LevelSource& source, const s
 			continue;
 		}
 		std::error_code failed;
-		if (!std::filesystem::is_regular_file(nativePath(mask.path), failed))
-		{
-			refuseInput(level_path, "no file " + mask.path, "the mask of a material", ExitCode::file);
-		}
+		refuseInputIf(!std::filesystem::is_regular_file(nativePath(mask.path), failed), level_path, "no file " + mask.path,
+					  "the mask of a material", ExitCode::file);
 		checkInside(level_path, "mask '" + mask.name + "'", mask.path, settings);
 	}
 }

@@ -101,10 +101,8 @@ public:
 		m_file.meshes.emplace_back();
 		for (const Element& element : m_elements)
 		{
-			if (element.count > 0 && element.properties.empty())
-			{
-				fail("elements '" + element.name + "' without properties", "what they are made of");
-			}
+			refuseInputIf(element.count > 0 && element.properties.empty(), headerPlace(),
+						  "elements '" + element.name + "' without properties", "what they are made of");
 			for (uint64_t i = 0; i < element.count; ++i)
 			{
 				m_list.clear();
@@ -121,25 +119,19 @@ public:
 	}
 
 private:
-	[[noreturn]] void fail(const std::string& found, const std::string& expected) const
+	std::string headerPlace() const
 	{
-		refuseInput(m_path + ": header, line " + std::to_string(m_line), found, expected);
+		return m_path + ": header, line " + std::to_string(m_line);
 	}
 
 	void header(MtlMaterial& material)
 	{
-		if (nextLine() != "ply")
-		{
-			fail("something else", "\"ply\"");
-		}
+		refuseInputIf(nextLine() != "ply", headerPlace(), "something else", "\"ply\"");
 		for (std::string line = nextLine(); line != "end_header"; line = nextLine())
 		{
 			takeHeader(line, material);
 		}
-		if (!m_has_format)
-		{
-			fail("no format", "the line that says it");
-		}
+		refuseInputIf(!m_has_format, headerPlace(), "no format", "the line that says it");
 	}
 
 	// Accepts any line end.
@@ -147,10 +139,7 @@ private:
 	{
 		m_line += 1;
 		const std::size_t end = m_bytes.find_first_of("\r\n", m_at);
-		if (end == std::string::npos)
-		{
-			fail("no end of the header", "\"end_header\"");
-		}
+		refuseInputIf(end == std::string::npos, headerPlace(), "no end of the header", "\"end_header\"");
 		const std::string line = m_bytes.substr(m_at, m_bytes.find_last_not_of(" \t", end - 1) + 1 - m_at);
 		m_at = end + (m_bytes.compare(end, 2, "\r\n") == 0 ? 2 : 1);
 		return line;
@@ -160,21 +149,17 @@ private:
 	{
 		const auto* const known =
 			std::find_if(kTypes.begin(), kTypes.end(), [&](const Type& one) { return hasWord(one.names, type); });
-		if (known == kTypes.end())
-		{
-			fail("an unknown type of number", "char, uchar, short, ushort, int, uint, float or double");
-		}
+		refuseInputIf(known == kTypes.end(), headerPlace(), "an unknown type of number",
+					  "char, uchar, short, ushort, int, uint, float or double");
 		return *known;
 	}
 
 	void takeFormat(const std::vector<std::string_view>& words)
 	{
 		const bool known = words.size() == 3 && std::find(kFormats.begin(), kFormats.end(), words[1]) != kFormats.end();
-		if (m_has_format || !known || words[2] != "1.0")
-		{
-			fail(m_has_format ? "a second format" : "an unknown format",
-				 "ascii, binary_little_endian or binary_big_endian, with 1.0 behind it, once");
-		}
+		refuseInputIf(m_has_format || !known || words[2] != "1.0", headerPlace(),
+					  m_has_format ? "a second format" : "an unknown format",
+					  "ascii, binary_little_endian or binary_big_endian, with 1.0 behind it, once");
 		m_has_format = true;
 		m_binary = words[1] != kFormats[0];
 		m_big_endian = words[1] == kFormats[2];
@@ -201,10 +186,8 @@ private:
 			Element& element = m_elements.emplace_back();
 			element.name = words[1];
 			element.count = nook::numberFrom<uint64_t>(words[2]).value_or(UINT64_MAX);
-			if (element.count > 3 * uint64_t{kMaxTriangles})
-			{
-				fail("a count that is none, or too large", "0 to " + std::to_string(3 * kMaxTriangles));
-			}
+			refuseInputIf(element.count > 3 * uint64_t{kMaxTriangles}, headerPlace(), "a count that is none, or too large",
+						  "0 to " + std::to_string(3 * kMaxTriangles));
 		}
 		else if (words[0] == "property" && !m_elements.empty() && (words.size() == 3 || (words.size() == 5 && words[1] == "list")))
 		{
@@ -226,7 +209,7 @@ private:
 		}
 		else
 		{
-			fail("something else", "format, element, property, comment or end_header");
+			refuseInput(headerPlace(), "something else", "format, element, property, comment or end_header");
 		}
 	}
 
@@ -462,10 +445,7 @@ public:
 		{
 			place.fail(std::to_string(m_corners.size()) + " corners of a facet", "3");
 		}
-		if (m_meshes.empty())
-		{
-			place.fail("a facet", "\"solid\" before it");
-		}
+		failIf(m_meshes.empty(), place, "a facet", "\"solid\" before it");
 		addFacet(m_meshes.back(), m_normal, m_corners);
 		m_corners.clear();
 		m_open = false;

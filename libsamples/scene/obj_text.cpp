@@ -261,10 +261,7 @@ public:
 			m_option = lowered(m_words[m_at++]);
 			ignored = take(picture) && ignored.empty() ? m_option : ignored;
 		}
-		if (m_at >= m_words.size())
-		{
-			m_place.fail("nothing", "the name of a file behind " + std::string(m_words[0]));
-		}
+		failIf(m_at >= m_words.size(), m_place, "nothing", "the name of a file behind " + std::string(m_words[0]));
 		picture.name = textFrom(m_words, m_at);
 		// v grows upward in the file and downward in a level.
 		picture.uv_of_set[0][0] = m_scale[0];
@@ -324,19 +321,13 @@ private:
 		{
 			to[i] = number();
 		}
-		if (m_option == "-s" && (to[0] == 0.0 || to[1] == 0.0))
-		{
-			m_place.fail("a scale of 0", "another number behind -s");
-		}
+		failIf(m_option == "-s" && (to[0] == 0.0 || to[1] == 0.0), m_place, "a scale of 0", "another number behind -s");
 		return m_option == "-t" && (to[0] != 0.0 || to[1] != 0.0);
 	}
 
 	std::string_view word(const std::string& expected)
 	{
-		if (m_at >= m_words.size())
-		{
-			m_place.fail("nothing", expected + " behind " + m_option);
-		}
+		failIf(m_at >= m_words.size(), m_place, "nothing", expected + " behind " + m_option);
 		return m_words[m_at++];
 	}
 
@@ -344,20 +335,14 @@ private:
 	{
 		const std::string_view text = word("a number");
 		const double value = numberOf(text).value_or(NAN);
-		if (!(std::fabs(value) <= kMaxNumber))
-		{
-			m_place.fail(nook::quoted(text), "a number behind " + m_option);
-		}
+		failIf(!(std::fabs(value) <= kMaxNumber), m_place, nook::quoted(text), "a number behind " + m_option);
 		return value;
 	}
 
 	bool isOn()
 	{
 		const std::string text = lowered(word("on or off"));
-		if (text != "on" && text != "off")
-		{
-			m_place.fail(nook::quoted(text), "on or off behind " + m_option);
-		}
+		failIf(text != "on" && text != "off", m_place, nook::quoted(text), "on or off behind " + m_option);
 		return text == "on";
 	}
 
@@ -389,15 +374,9 @@ private:
 float shareIn(const std::vector<std::string_view>& words, const TextPlace& place)
 {
 	const std::size_t at = words.size() > 1 && words[1] == "-halo" ? 2 : 1; // ignores how -halo depends on the view
-	if (at >= words.size())
-	{
-		place.fail("nothing", "a number");
-	}
+	failIf(at >= words.size(), place, "nothing", "a number");
 	const double value = place.number(words[at]);
-	if (!(value >= 0.0 && value <= 1.0))
-	{
-		place.fail(quoted(words[at]), "0 to 1 behind " + std::string(words[0]));
-	}
+	failIf(!(value >= 0.0 && value <= 1.0), place, quoted(words[at]), "0 to 1 behind " + std::string(words[0]));
 	return static_cast<float>(value);
 }
 

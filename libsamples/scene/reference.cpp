@@ -141,11 +141,9 @@ float falloffAt(float distance_m, const ReferenceSettings& settings, float radiu
 	{
 		return 0.0F;
 	}
-	if (settings.falloff == Falloff::linear)
-	{
-		return 1.0F - distance_m / radius_m;
-	}
-	return distance_m <= u_m ? distance_m / u_m : u_m / distance_m;
+	return settings.falloff == Falloff::linear ? 1.0F - distance_m / radius_m
+		   : distance_m <= u_m                 ? distance_m / u_m
+											   : u_m / distance_m;
 }
 
 void fillObscurance(const Tracer& tracer, const ReferenceSettings& settings, glm::dvec3 origin, glm::vec3 normal,

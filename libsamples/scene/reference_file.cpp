@@ -108,10 +108,7 @@ std::vector<ReferencePoint> readPoints(const std::string& path)
 		}
 		points.push_back(*point);
 	}
-	if (points.empty())
-	{
-		refuseInput(path, "no point", "rows " + std::string(kHeader));
-	}
+	refuseInputIf(points.empty(), path, "no point", "rows " + std::string(kHeader));
 	return points;
 }
 

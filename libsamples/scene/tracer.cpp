@@ -324,13 +324,12 @@ template <bool is_masked> bool Tracer::Data::isMet(const RTCFilterFunctionNArgum
 void Tracer::Data::check(const std::string& what) const
 {
 	const RTCError code = rtcGetDeviceError(device);
-	if (code != RTC_ERROR_NONE)
-	{
-		throw Error(ExitCode::runtime, level.name + ": " + what + ": Embree " +
-										   (code == RTC_ERROR_OUT_OF_MEMORY ? std::string("found no memory left")
-																			: "failed with code " + std::to_string(code)) +
-										   ", expected a tree of " + std::to_string(level.triangles.size()) + " triangles");
-	}
+	refuseIf(
+		code != RTC_ERROR_NONE,
+		level.name + ": " + what + ": Embree " +
+			(code == RTC_ERROR_OUT_OF_MEMORY ? std::string("found no memory left") : "failed with code " + std::to_string(code)) +
+			", expected a tree of " + std::to_string(level.triangles.size()) + " triangles",
+		ExitCode::runtime);
 }
 
 void Tracer::Data::fill(int threads, const Vicinity* near, std::span<const uint8_t> occluders)
@@ -442,11 +441,8 @@ RTCDevice newEmbreeDevice()
 		refuseInput("NOOK_TEST_ISA", "'" + oneLine(isa) + "'", "sse2, sse4.2, avx, avx2 or avx512", ExitCode::usage);
 	}
 	RTCDevice device = rtcNewDevice(isa == nullptr ? "" : ("isa=" + std::string(isa)).c_str());
-	if (device == nullptr)
-	{
-		refuseInput(isa == nullptr ? "Embree" : "NOOK_TEST_ISA", "no device", "instructions that Embree and this processor have",
-					ExitCode::runtime);
-	}
+	refuseInputIf(device == nullptr, isa == nullptr ? "Embree" : "NOOK_TEST_ISA", "no device",
+				  "instructions that Embree and this processor have", ExitCode::runtime);
 	return device;
 }
 

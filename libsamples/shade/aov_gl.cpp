@@ -96,7 +96,7 @@ class GlArray
 public:
 	// `format` is the texel format and `texel` its size in bytes. Throws Error (unsupported) for more texels than OpenGL supports.
 	GlArray(std::span<const std::byte> bytes, unsigned format, std::size_t texel)
-		: m_buffer(glGenBuffers, glDeleteBuffers), m_texture(glGenTextures, glDeleteTextures)
+		: buffer(glGenBuffers, glDeleteBuffers), m_texture(glGenTextures, glDeleteTextures)
 	{
 		int most = 0;
 		glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
@@ -104,12 +104,12 @@ public:
 				 "OpenGL: found " + std::to_string(bytes.size() / texel) +
 					 " corners, polygons or clusters of volumes, expected at most " + std::to_string(most),
 				 ExitCode::unsupported);
-		glBindBuffer(GL_TEXTURE_BUFFER, m_buffer);
+		glBindBuffer(GL_TEXTURE_BUFFER, buffer);
 		glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max(bytes.size(), texel)), nullptr, GL_STATIC_DRAW);
 		glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
 		glActiveTexture(GL_TEXTURE15);
 		glBindTexture(GL_TEXTURE_BUFFER, m_texture);
-		glTexBuffer(GL_TEXTURE_BUFFER, format, m_buffer);
+		glTexBuffer(GL_TEXTURE_BUFFER, format, buffer);
 		checkGlErrors();
 	}
 
@@ -120,17 +120,13 @@ public:
 		glBindTexture(GL_TEXTURE_BUFFER, m_texture);
 		if (storage)
 		{
-			glBindBufferBase(GL_SHADER_STORAGE_BUFFER, unit, m_buffer);
+			glBindBufferBase(GL_SHADER_STORAGE_BUFFER, unit, buffer);
 		}
 	}
 
-	unsigned buffer() const
-	{
-		return m_buffer;
-	}
+	const GlName buffer;
 
 private:
-	GlName m_buffer;
 	GlName m_texture;
 };
 
@@ -233,39 +229,34 @@ class AovPicture
 public:
 	// Throws Error (unsupported) for a skewed camera.
 	AovPicture(const GBuffer& gbuffer, const nook_volumes::Header& header, const AovSettings& settings, int every_px)
-		: m_mask(settings.mask), m_every_px(every_px), m_columns((gbuffer.width_px + every_px - 1) / every_px),
-		  m_rows((gbuffer.height_px + every_px - 1) / every_px), m_camera(cameraOf(gbuffer, every_px)),
-		  m_block(glGenBuffers, glDeleteBuffers)
+		: result(PictureShape{PictureFormat::scalar, (gbuffer.width_px + every_px - 1) / every_px,
+							  (gbuffer.height_px + every_px - 1) / every_px}),
+		  m_mask(settings.mask), m_every_px(every_px), m_camera(cameraOf(gbuffer, every_px)), m_block(glGenBuffers, glDeleteBuffers)
 	{
-		const char* const problem = m_frame.set(header, m_camera);
+		const char* const problem = frame.set(header, m_camera);
 		if (problem != nullptr)
 		{
 			throw Error(ExitCode::unsupported, std::string("camera: found ") + problem +
 												   ", expected a right-handed one, column by column, without a skew");
 		}
-		m_depth_stencil = targetOf(GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, m_columns, m_rows);
+		m_depth_stencil = targetOf(GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, result.shape.width,
+								   result.shape.height);
 		std::vector<unsigned> sums;
 		for (int first = 0; first < (settings.mask ? settings.directions : 1); first += 128)
 		{
 			// Above 128 directions there are two targets, the second with all four channels; unused ones stay 0.
-			m_sums.push_back(volumeTarget(settings, first > 0 ? 128 : settings.directions, m_columns, m_rows));
+			m_sums.push_back(
+				volumeTarget(settings, first > 0 ? 128 : settings.directions, result.shape.width, result.shape.height));
 			sums.push_back(m_sums.back());
 		}
-		m_result = std::make_unique<GlTexture>(PictureShape{PictureFormat::scalar, m_columns, m_rows});
 		m_volume_frame = glFrameOf(sums, m_depth_stencil);
-		m_result_frame = glFrameOf(std::array{m_result->name()}, m_depth_stencil);
+		m_result_frame = glFrameOf(std::array<unsigned, 1>{result.name}, m_depth_stencil);
 		glBindBuffer(GL_UNIFORM_BUFFER, m_block);
-		glBufferData(GL_UNIFORM_BUFFER, sizeof m_frame.block, &m_frame.block, GL_STATIC_DRAW);
+		glBufferData(GL_UNIFORM_BUFFER, sizeof frame.block, &frame.block, GL_STATIC_DRAW);
 	}
 
-	const nook_volumes::Frame& frame() const
-	{
-		return m_frame;
-	}
-	const GlTexture& result() const
-	{
-		return *m_result;
-	}
+	nook_volumes::Frame frame;
+	const GlTexture result;
 
 	// Binds the uniform block and this picture's textures.
 	void bind() const
@@ -273,7 +264,7 @@ public:
 		glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
 		bindTexture(5, m_sums[0]);
 		bindTexture(6, m_sums.back());
-		bindTexture(7, m_result->name());
+		bindTexture(7, result.name);
 	}
 
 	// Draws the depth buffer from the bound linear depths; leaves the depth test enabled and depth writes disabled.
@@ -281,7 +272,7 @@ public:
 	{
 		const double* const p = m_camera.projection;
 		glBindFramebuffer(GL_FRAMEBUFFER, m_volume_frame);
-		glViewport(0, 0, m_columns, m_rows);
+		glViewport(0, 0, result.shape.width, result.shape.height);
 		glUseProgram(program);
 		glUniform4f(glGetUniformLocation(program, "nook_z"), static_cast<float>(-p[10]), static_cast<float>(p[14]),
 					static_cast<float>(-p[11]), static_cast<float>(p[15]));
@@ -301,7 +292,7 @@ public:
 	void beginVolumes() const
 	{
 		glBindFramebuffer(GL_FRAMEBUFFER, m_volume_frame);
-		glViewport(0, 0, m_columns, m_rows);
+		glViewport(0, 0, result.shape.width, result.shape.height);
 		const std::array<float, 4> none{};
 		const std::array<unsigned, 4> no_bits{};
 		for (std::size_t i = 0; i < m_sums.size(); ++i)
@@ -319,19 +310,15 @@ public:
 	void useResult() const
 	{
 		glBindFramebuffer(GL_FRAMEBUFFER, m_result_frame);
-		glViewport(0, 0, m_columns, m_rows);
+		glViewport(0, 0, result.shape.width, result.shape.height);
 	}
 
 private:
 	bool m_mask;
 	int m_every_px;
-	int m_columns;
-	int m_rows;
 	nook_volumes::Camera m_camera;
-	nook_volumes::Frame m_frame;
 	GlName m_depth_stencil;
 	std::vector<GlName> m_sums;
-	std::unique_ptr<GlTexture> m_result;
 	GlName m_volume_frame, m_result_frame;
 	GlName m_block;
 };
@@ -343,22 +330,22 @@ class GlVolumes
 public:
 	// The volumes of one frame. Keeps references to both arguments, which must outlive it. Throws like GlArray.
 	GlVolumes(const PackedVolumes& packed, const nook_volumes::Frame& frame, const AovGlOptions& options)
-		: m_packed(packed), m_frame(frame), m_options(options), m_vertices(glGenVertexArrays, glDeleteVertexArrays)
+		: has_depth_bounds(options.depth_bounds && !options.storage_buffers && epoxy_has_gl_extension("GL_EXT_depth_bounds_test")),
+		  m_packed(packed), m_frame(frame), m_options(options), m_vertices(glGenVertexArrays, glDeleteVertexArrays)
 	{
 		const auto seen = mapped(packed.clusters, [&](const nook_volumes::Cluster& cluster) { return frame.seen(cluster); });
 		m_corners = std::make_unique<GlArray>(bytesOf(packed.corners), GL_RGBA16UI, 8);
 		m_polygons = std::make_unique<GlArray>(bytesOf(packed.polygons), GL_RG32UI, 8);
 		m_clusters = std::make_unique<GlArray>(bytesOf(seen), GL_RGBA32UI, 16);
-		m_bounds = options.depth_bounds && !options.storage_buffers && epoxy_has_gl_extension("GL_EXT_depth_bounds_test");
 		glBindVertexArray(m_vertices);
 		if (options.prisms)
 		{
 			m_points = std::make_unique<GlArray>(bytesOf(packed.vertices), GL_RGBA16UI, 8);
 			m_indices = std::make_unique<GlArray>(bytesOf(packed.indices), GL_R16UI, 2);
-			glBindBuffer(GL_ARRAY_BUFFER, m_points->buffer());
+			glBindBuffer(GL_ARRAY_BUFFER, m_points->buffer);
 			glEnableVertexAttribArray(1);
 			glVertexAttribIPointer(1, 4, GL_UNSIGNED_SHORT, 8, nullptr);
-			glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, m_indices->buffer());
+			glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, m_indices->buffer);
 		}
 		if (options.storage_buffers)
 		{
@@ -366,7 +353,7 @@ public:
 			std::iota(numbers.begin(), numbers.end(), 0);
 			m_numbers = std::make_unique<GlArray>(bytesOf(numbers), GL_R32I, 4);
 			m_commands = GlName(glGenBuffers, glDeleteBuffers);
-			glBindBuffer(GL_ARRAY_BUFFER, m_numbers->buffer());
+			glBindBuffer(GL_ARRAY_BUFFER, m_numbers->buffer);
 			glEnableVertexAttribArray(0);
 			glVertexAttribIPointer(0, 1, GL_INT, 4, nullptr);
 			glVertexAttribDivisor(0, 1);
@@ -390,11 +377,7 @@ public:
 		m_options.storage_buffers ? drawTogether(clusters) : drawOneByOne(clusters);
 	}
 
-	// True if the depth bounds test is available and requested; the caller must then enable it around draw().
-	bool hasDepthBounds() const
-	{
-		return m_bounds;
-	}
+	const bool has_depth_bounds; // available and requested; the caller must then enable the test around draw()
 
 private:
 	void drawOneByOne(const std::vector<std::size_t>& clusters) const
@@ -403,7 +386,7 @@ private:
 		{
 			const nook_volumes::Cluster& cluster = m_packed.clusters[i];
 			glVertexAttribI1i(0, static_cast<int>(i));
-			if (m_bounds)
+			if (has_depth_bounds)
 			{
 				double least = 0.0;
 				double most = 1.0;
@@ -451,7 +434,6 @@ private:
 	const nook_volumes::Frame& m_frame;
 	AovGlOptions m_options;
 	std::unique_ptr<GlArray> m_corners, m_polygons, m_clusters, m_points, m_indices, m_numbers;
-	bool m_bounds = false;
 	GlName m_vertices;
 	GlName m_commands;
 };
@@ -480,11 +462,11 @@ public:
 	std::vector<PassTime> draw(bool timer)
 	{
 		m_volumes->bind();
-		bindTexture(3, m_depths->name());
-		bindTexture(4, m_normals->name());
+		bindTexture(3, m_depths->name);
+		bindTexture(4, m_normals->name);
 		bindTexture(8, m_half_spaces);
 		m_picture->bind();
-		m_counts.fragments = 0;
+		counts.fragments = 0;
 		std::vector<PassTime> times;
 		times.push_back({"depth", secondsOf([this] { m_picture->drawDepth(m_depth_program); }, timer)});
 		times.push_back({"volumes", secondsOf([this] { drawVolumes(*m_picture); }, timer)});
@@ -496,7 +478,7 @@ public:
 			m_whole->bind();
 			times.push_back({"depth, pixels alone", secondsOf([this] { m_whole->drawDepth(m_depth_program); }, timer)});
 			times.push_back({"volumes, pixels alone", secondsOf([this] { drawVolumes(*m_whole); }, timer)});
-			times.push_back({"resolve, pixels alone", secondsOf([this] { m_counts.pixels_alone = resolve(*m_whole); }, timer)});
+			times.push_back({"resolve, pixels alone", secondsOf([this] { counts.pixels_alone = resolve(*m_whole); }, timer)});
 			glDisable(GL_STENCIL_TEST);
 		}
 		return times;
@@ -504,26 +486,23 @@ public:
 
 	std::vector<float> visibility() const
 	{
-		return readFloats((m_whole ? m_whole : m_picture)->result());
+		return readFloats((m_whole ? m_whole : m_picture)->result);
 	}
 
-	AovCounts counts() const
-	{
-		return m_counts;
-	}
+	AovCounts counts;
 
 private:
 	void choose(const VolumeSet& volumes)
 	{
-		m_counts.volumes = volumes.occluders.polygons.size();
+		counts.volumes = volumes.occluders.polygons.size();
 		for (std::size_t i = 0; i < m_packed.clusters.size(); ++i)
 		{
 			const nook_volumes::Cluster& cluster = m_packed.clusters[i];
-			if (m_settings.cull && !m_picture->frame().inSight(cluster))
+			if (m_settings.cull && !m_picture->frame.inSight(cluster))
 			{
 				continue;
 			}
-			const bool around = m_options.back_faces || m_picture->frame().holdsEye(cluster);
+			const bool around = m_options.back_faces || m_picture->frame.holdsEye(cluster);
 			if (m_options.choose_faces || !around)
 			{
 				m_before.push_back(i);
@@ -532,8 +511,8 @@ private:
 			{
 				m_around.push_back(i);
 			}
-			m_counts.clusters_drawn += 1;
-			m_counts.volumes_drawn += cluster.polygon_count;
+			counts.clusters_drawn += 1;
+			counts.volumes_drawn += cluster.polygon_count;
 		}
 	}
 
@@ -544,7 +523,7 @@ private:
 		const auto normals = mapped(m_gbuffer.normals, [](const glm::vec3& normal) { return glm::vec4(normal, 0.0F); });
 		m_depths = std::make_unique<GlTexture>(width, height, 1, finiteDepths(m_gbuffer).data());
 		m_normals = std::make_unique<GlTexture>(width, height, 4, &normals[0].x);
-		m_volumes = std::make_unique<GlVolumes>(m_packed, m_picture->frame(), m_options);
+		m_volumes = std::make_unique<GlVolumes>(m_packed, m_picture->frame, m_options);
 		const std::string head = m_options.storage_buffers ? "#version 430 core\n" : "#version 330 core\n";
 		const std::string vertex = head + "#define NOOK_VERTEX\n" + (m_options.prisms ? "#define NOOK_PRISMS\n" : "") +
 								   (m_options.choose_faces ? "#define NOOK_CHOOSE_FACES\n" : "");
@@ -585,11 +564,11 @@ private:
 		glUseProgram(m_volume_program);
 		glEnable(GL_DEPTH_CLAMP);
 		glEnable(GL_CULL_FACE);
-		glFrontFace(picture.frame().mirrored() ? GL_CW : GL_CCW);
+		glFrontFace(picture.frame.mirrored() ? GL_CW : GL_CCW);
 		glEnable(m_settings.mask ? GL_COLOR_LOGIC_OP : GL_BLEND);
 		glBlendFunc(GL_ONE, GL_ONE);
 		glLogicOp(GL_OR);
-		if (m_volumes->hasDepthBounds())
+		if (m_volumes->has_depth_bounds)
 		{
 			glEnable(GL_DEPTH_BOUNDS_TEST_EXT);
 		}
@@ -601,7 +580,7 @@ private:
 		glDepthFunc(GL_GEQUAL);
 		drawFaces(2, m_around);
 		glEndQuery(GL_SAMPLES_PASSED);
-		if (m_volumes->hasDepthBounds())
+		if (m_volumes->has_depth_bounds)
 		{
 			glDisable(GL_DEPTH_BOUNDS_TEST_EXT);
 		}
@@ -610,7 +589,7 @@ private:
 		glDisable(GL_CULL_FACE);
 		glDisable(GL_DEPTH_CLAMP);
 		glDisable(GL_DEPTH_TEST);
-		m_counts.fragments += passed();
+		counts.fragments += passed();
 	}
 
 	// Result of the last query.
@@ -672,7 +651,6 @@ private:
 	GlName m_half_spaces; // masks: their table
 	GlName m_depth_program, m_volume_program, m_resolve_program, m_sparse_program;
 	GlName m_query;
-	AovCounts m_counts;
 };
 
 } // namespace
@@ -687,7 +665,7 @@ AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSet
 	const bool timer = !context.isSoftware();
 	warmUp(context, drawing.repetitions, [&] { drawer.draw(timer); });
 	const auto times = listOf(static_cast<std::size_t>(drawing.repetitions) + 1, [&](std::size_t) { return drawer.draw(timer); });
-	AovShaded made{{drawer.visibility(), context.renderer(), 0.0, {}, {}}, drawer.counts()};
+	AovShaded made{{drawer.visibility(), context.renderer(), 0.0, {}, {}}, drawer.counts};
 	setTimes(made.shaded, times);
 	return made;
 }

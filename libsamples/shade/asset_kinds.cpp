@@ -88,16 +88,6 @@ std::unique_ptr<LevelAsset> makeVolumes(const AssetSource& source, const AssetSe
 	return std::make_unique<VolumeAsset>(std::move(built.set), source.level.name, run);
 }
 
-double volumeSeconds(const AssetSettings& settings, double triangles)
-{
-	return settings.volumes == VolumeRecipe::built ? 2.0 + 1.4e-4 * triangles : 0.3 + 2.4e-5 * triangles;
-}
-
-std::string volumeKey(const AssetSettings& settings)
-{
-	return "volumes " + std::string(nameOf(settings.volumes));
-}
-
 std::string_view volumeResolution(const AssetSettings& settings)
 {
 	return settings.aov.every_px == 3 ? "third" : settings.aov.every_px == 5 ? "fifth" : "full";
@@ -296,19 +286,9 @@ std::unique_ptr<LevelAsset> makeBake(const AssetSource& source, const AssetSetti
 									   4 * values + 32 * more_vertices + 12 * more_triangles, settings, run);
 }
 
-double bakeSeconds(const AssetSettings& settings, double triangles)
-{
-	return triangles * (4e-5 + (settings.bake_error > 0.0 ? 2.5e-5 / settings.bake_error : 0.0));
-}
-
 std::string bakeWords(const AssetSettings& settings)
 {
 	return settings.bake_error > 0.0 ? " " + numberText(settings.bake_error) : "";
-}
-
-std::string bakeKey(const AssetSettings& settings)
-{
-	return "bake" + bakeWords(settings);
 }
 
 // Budgets of bytes: the level's vertices, and as many as an error asks for.
@@ -347,10 +327,11 @@ std::vector<AssetKind> assetKinds()
 						 .ending = ".volumes.glb",
 						 .slow = true,
 						 .pixel_s = 2e-6,
-						 .make_s = volumeSeconds,
+						 .make_s = [](const AssetSettings& settings, double triangles)
+						 { return settings.volumes == VolumeRecipe::built ? 2.0 + 1.4e-4 * triangles : 0.3 + 2.4e-5 * triangles; },
 						 .candidates = sumCandidates,
 						 .words = volumeWords,
-						 .key = volumeKey,
+						 .key = [](const AssetSettings& settings) { return "volumes " + std::string(nameOf(settings.volumes)); },
 						 .resolution = volumeResolution,
 						 .definition = volumeDefinition,
 						 .make = makeVolumes,
@@ -368,10 +349,11 @@ std::vector<AssetKind> assetKinds()
 			 .option = "--bake",
 			 .with_level = true,
 			 .pixel_s = 2e-7,
-			 .make_s = bakeSeconds,
+			 .make_s = [](const AssetSettings& settings, double triangles)
+			 { return triangles * (4e-5 + (settings.bake_error > 0.0 ? 2.5e-5 / settings.bake_error : 0.0)); },
 			 .candidates = bakeCandidates,
 			 .words = bakeWords,
-			 .key = bakeKey,
+			 .key = [](const AssetSettings& settings) { return "bake" + bakeWords(settings); },
 			 .make = makeBake,
 			 .command = bakeCommand,
 			 .emit = emitBake}};

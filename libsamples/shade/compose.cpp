@@ -65,12 +65,10 @@ Static readStatic(const ComposeSettings& settings, const GBuffer& gbuffer, const
 	{
 		fixed.gbuffer = readGBuffer(settings.fixed, {});
 		fixed.files.push_back(settings.fixed);
-		if (fixed.gbuffer->width_px != gbuffer.width_px || fixed.gbuffer->height_px != gbuffer.height_px ||
-			fixed.gbuffer->view.projection != gbuffer.view.projection ||
-			fixed.gbuffer->view.camera_from_world != gbuffer.view.camera_from_world)
-		{
-			refuseInput(settings.fixed, "another size or camera than the picture's", "the same view");
-		}
+		refuseInputIf(fixed.gbuffer->width_px != gbuffer.width_px || fixed.gbuffer->height_px != gbuffer.height_px ||
+						  fixed.gbuffer->view.projection != gbuffer.view.projection ||
+						  fixed.gbuffer->view.camera_from_world != gbuffer.view.camera_from_world,
+					  settings.fixed, "another size or camera than the picture's", "the same view");
 	}
 	if (fixed.gbuffer)
 	{
@@ -173,11 +171,8 @@ PatternTile tileFor(const std::string& path, const ShadeSettings& settings, cons
 	{
 		checkProgressive(input, path);
 	}
-	if (tile.domain != domain)
-	{
-		refuseInput(path + ": domain", std::string(nameOf(tile.domain)),
-					std::string(nameOf(domain)) + " for --method " + std::string(nameOf(settings.method)));
-	}
+	refuseInputIf(tile.domain != domain, path + ": domain", std::string(nameOf(tile.domain)),
+				  std::string(nameOf(domain)) + " for --method " + std::string(nameOf(settings.method)));
 	return tile;
 }
 
@@ -292,11 +287,9 @@ Composed compose(const ComposeSettings& settings, const GBuffer& gbuffer, const 
 Picture withoutGuard(const std::string& path, const GBuffer& gbuffer, const std::vector<float>& values, int guard_px)
 {
 	Picture inner{gbuffer.width_px - 2 * guard_px, gbuffer.height_px - 2 * guard_px, {}};
-	if (inner.width_px < 1 || inner.height_px < 1)
-	{
-		refuseInput(path, std::to_string(gbuffer.width_px) + " x " + std::to_string(gbuffer.height_px) + " pixels",
-					"more than --guard " + std::to_string(guard_px) + " leaves nothing of");
-	}
+	refuseInputIf(inner.width_px < 1 || inner.height_px < 1, path,
+				  std::to_string(gbuffer.width_px) + " x " + std::to_string(gbuffer.height_px) + " pixels",
+				  "more than --guard " + std::to_string(guard_px) + " leaves nothing of");
 	inner.values = inside(gbuffer, values, guard_px);
 	return inner;
 }

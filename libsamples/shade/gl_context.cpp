@@ -20,8 +20,12 @@ namespace nook
 namespace
 {
 
-[[noreturn]] void refuse(const std::string& what)
+void requireEgl(bool works, const std::string& what)
 {
+	if (works)
+	{
+		return;
+	}
 	std::array<char, 16> code{};
 	std::snprintf(code.data(), code.size(), "0x%04X", static_cast<unsigned>(eglGetError()));
 	throw Error(ExitCode::unsupported,
@@ -55,10 +59,7 @@ EGLDisplay anyDisplay()
 	{
 		return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
 	}
-	if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base"))
-	{
-		refuse("found no EGL without a display");
-	}
+	requireEgl(epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base"), "found no EGL without a display");
 	return eglGetDisplay(EGL_DEFAULT_DISPLAY);
 }
 
@@ -81,15 +82,11 @@ std::optional<std::vector<EGLDeviceEXT>> listedDevices()
 EGLDisplay displayOf(int device)
 {
 	const std::optional<std::vector<EGLDeviceEXT>> devices = listedDevices();
-	if (!devices)
-	{
-		refuse("found no list of devices");
-	}
-	if (device < 0 || static_cast<std::size_t>(device) >= devices->size())
-	{
-		throw Error(ExitCode::unsupported, "OpenGL: found no device " + std::to_string(device) + ", expected one of the " +
-											   std::to_string(devices->size()) + " that EGL lists, from 0");
-	}
+	requireEgl(devices.has_value(), "found no list of devices");
+	refuseIf(device < 0 || static_cast<std::size_t>(device) >= devices->size(),
+			 "OpenGL: found no device " + std::to_string(device) + ", expected one of the " + std::to_string(devices->size()) +
+				 " that EGL lists, from 0",
+			 ExitCode::unsupported);
 	return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, (*devices)[static_cast<std::size_t>(device)], nullptr);
 }
 
@@ -187,14 +184,9 @@ GlContext::GlContext(GlApi api, std::optional<int> device)
 {
 	requireLibraries(api);
 	m_display = device ? displayOf(*device) : chosenDisplay();
-	if (m_display == EGL_NO_DISPLAY || eglInitialize(m_display, nullptr, nullptr) == EGL_FALSE)
-	{
-		refuse("found no display");
-	}
-	if (eglBindAPI(api == GlApi::core ? EGL_OPENGL_API : EGL_OPENGL_ES_API) == EGL_FALSE)
-	{
-		refuse(api == GlApi::core ? "found no desktop OpenGL" : "found no OpenGL ES");
-	}
+	requireEgl(m_display != EGL_NO_DISPLAY && eglInitialize(m_display, nullptr, nullptr) != EGL_FALSE, "found no display");
+	requireEgl(eglBindAPI(api == GlApi::core ? EGL_OPENGL_API : EGL_OPENGL_ES_API) != EGL_FALSE,
+			   api == GlApi::core ? "found no desktop OpenGL" : "found no OpenGL ES");
 	// Mesa gives its newest version whatever is asked for; NVIDIA gives the version asked for, without compute shaders in 3.3.
 	for (const auto& [major, minor] : api == GlApi::core ? std::vector<std::pair<EGLint, EGLint>>{{4, 5}, {4, 3}, {3, 3}}
 														 : std::vector<std::pair<EGLint, EGLint>>{{3, 0}})
@@ -212,15 +204,9 @@ GlContext::GlContext(GlApi api, std::optional<int> device)
 			break;
 		}
 	}
-	if (m_context == EGL_NO_CONTEXT)
-	{
-		refuse("found no context");
-	}
+	requireEgl(m_context != EGL_NO_CONTEXT, "found no context");
 	use();
-	if (api == GlApi::es && !epoxy_has_gl_extension("GL_EXT_color_buffer_float"))
-	{
-		refuse("found no pictures of floats");
-	}
+	requireEgl(api == GlApi::core || epoxy_has_gl_extension("GL_EXT_color_buffer_float"), "found no pictures of floats");
 }
 
 GlContext::~GlContext()
@@ -231,10 +217,7 @@ GlContext::~GlContext()
 
 void GlContext::use() const
 {
-	if (eglMakeCurrent(m_display, EGL_NO_SURFACE, EGL_NO_SURFACE, m_context) == EGL_FALSE)
-	{
-		refuse("found no context");
-	}
+	requireEgl(eglMakeCurrent(m_display, EGL_NO_SURFACE, EGL_NO_SURFACE, m_context) != EGL_FALSE, "found no context");
 }
 
 std::string GlContext::renderer() const
@@ -269,34 +252,34 @@ GlTexture::GlTexture(int width, int height, int channels, const float* values)
 	checkGlErrors();
 }
 
-GlTexture::GlTexture(const PictureShape& shape)
-	: m_shape(shape), m_target(shape.format == PictureFormat::counts ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D),
-	  m_name(glGenTextures, glDeleteTextures)
+GlTexture::GlTexture(const PictureShape& of)
+	: shape(of), target(shape.format == PictureFormat::counts ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D),
+	  name(glGenTextures, glDeleteTextures)
 {
-	glBindTexture(m_target, m_name);
-	glTexParameteri(m_target, GL_TEXTURE_MIN_FILTER, shape.levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST);
-	glTexParameteri(m_target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-	glTexParameteri(m_target, GL_TEXTURE_MAX_LEVEL, shape.levels - 1);
+	glBindTexture(target, name);
+	glTexParameteri(target, GL_TEXTURE_MIN_FILTER, shape.levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST);
+	glTexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+	glTexParameteri(target, GL_TEXTURE_MAX_LEVEL, shape.levels - 1);
 	const GlFormat format = formatOf(shape.format);
 	for (int level = 0; level < shape.levels; ++level)
 	{
 		const int width = levelSide(shape.width, level);
 		const int height = levelSide(shape.height, level);
-		if (m_target == GL_TEXTURE_2D)
+		if (target == GL_TEXTURE_2D)
 		{
-			glTexImage2D(m_target, level, format.stored, width, height, 0, format.channels, format.type, nullptr);
+			glTexImage2D(target, level, format.stored, width, height, 0, format.channels, format.type, nullptr);
 		}
 		else
 		{
-			glTexImage3D(m_target, level, format.stored, width, height, shape.layers, 0, format.channels, format.type, nullptr);
+			glTexImage3D(target, level, format.stored, width, height, shape.layers, 0, format.channels, format.type, nullptr);
 		}
 	}
 	checkGlErrors();
 }
 
-GlLeft::GlLeft(int width, int height) : m_name(glGenRenderbuffers, glDeleteRenderbuffers)
+GlLeft::GlLeft(int width, int height) : name(glGenRenderbuffers, glDeleteRenderbuffers)
 {
-	glBindRenderbuffer(GL_RENDERBUFFER, m_name);
+	glBindRenderbuffer(GL_RENDERBUFFER, name);
 	glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT16, width, height);
 	checkGlErrors();
 }
@@ -339,15 +322,15 @@ double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 {
 	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
 	glBindFramebuffer(GL_FRAMEBUFFER, frame);
-	if (target.target() == GL_TEXTURE_2D)
+	if (target.target == GL_TEXTURE_2D)
 	{
-		glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.name(), level);
+		glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.name, level);
 	}
 	else
 	{
-		glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, target.name(), level, layer);
+		glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, target.name, level, layer);
 	}
-	glViewport(0, 0, levelSide(target.shape().width, level), levelSide(target.shape().height, level));
+	glViewport(0, 0, levelSide(target.shape.width, level), levelSide(target.shape.height, level));
 	glBindVertexArray(m_vertices);
 	glUseProgram(m_program);
 	glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
@@ -355,19 +338,19 @@ double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 	{
 		const GlTexture& texture = *m_units[i].texture;
 		glActiveTexture(GL_TEXTURE0 + static_cast<unsigned>(i));
-		glBindTexture(texture.target(), texture.name());
-		if (texture.shape().levels > 1)
+		glBindTexture(texture.target, texture.name);
+		if (texture.shape.levels > 1)
 		{
 			// A render target must not be readable: otherwise a level that reads the one above would be undefined.
 			const bool own = &texture == &target;
-			glTexParameteri(texture.target(), GL_TEXTURE_MAX_LEVEL, own ? std::max(level - 1, 0) : texture.shape().levels - 1);
+			glTexParameteri(texture.target, GL_TEXTURE_MAX_LEVEL, own ? std::max(level - 1, 0) : texture.shape.levels - 1);
 		}
 		glUniform1i(m_units[i].location, static_cast<int>(i));
 	}
 	if (m_left != nullptr)
 	{
 		// Draws at the middle of the depth range: drawn pixels pass against the far end, discarded ones do not.
-		glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, m_left->name());
+		glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, m_left->name);
 		glEnable(GL_DEPTH_TEST);
 		glDepthMask(m_fills ? GL_FALSE : GL_TRUE);
 		glDepthFunc(m_fills ? GL_LESS : GL_ALWAYS);
@@ -387,12 +370,12 @@ double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 
 std::vector<float> readFloats(const GlTexture& texture)
 {
-	const PictureShape& shape = texture.shape();
+	const PictureShape& shape = texture.shape;
 	const auto channels = static_cast<std::size_t>(channelsOf(shape.format));
 	std::vector<float> values(channels * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
 	const GlName frame(glGenFramebuffers, glDeleteFramebuffers);
 	glBindFramebuffer(GL_FRAMEBUFFER, frame);
-	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
+	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name, 0);
 	glPixelStorei(GL_PACK_ALIGNMENT, 4);
 	glReadPixels(0, 0, shape.width, shape.height, formatOf(shape.format).channels, GL_FLOAT, values.data());
 	checkGlErrors();
@@ -434,20 +417,14 @@ GlName linkedProgram(const std::vector<unsigned>& shaders)
 	}
 	int good = 0;
 	glGetProgramiv(program, GL_LINK_STATUS, &good);
-	if (good == 0)
-	{
-		throw Error(ExitCode::runtime, "OpenGL: found a program that does not link, expected one that links");
-	}
+	refuseIf(good == 0, "OpenGL: found a program that does not link, expected one that links", ExitCode::runtime);
 	return program;
 }
 
 void checkGlErrors()
 {
 	const unsigned code = glGetError();
-	if (code != GL_NO_ERROR)
-	{
-		throw Error(ExitCode::runtime, "OpenGL: found error " + std::to_string(code) + ", expected none");
-	}
+	refuseIf(code != GL_NO_ERROR, "OpenGL: found error " + std::to_string(code) + ", expected none", ExitCode::runtime);
 }
 
 double secondsOf(const std::function<void()>& commands, bool timer)
@@ -497,11 +474,11 @@ double GlScan::run(const GlTexture& source, const GlTexture& target, int layer, 
 {
 	glUseProgram(m_program);
 	glActiveTexture(GL_TEXTURE0);
-	glBindTexture(source.target(), source.name());
+	glBindTexture(source.target, source.name);
 	glUniform1i(glGetUniformLocation(m_program, "nook_source"), 0);
 	glUniform1i(glGetUniformLocation(m_program, "nook_target"), 0);
-	glBindImageTexture(0, target.name(), 0, GL_FALSE, layer, GL_WRITE_ONLY, GL_RGBA32UI);
-	const PictureShape& shape = target.shape();
+	glBindImageTexture(0, target.name, 0, GL_FALSE, layer, GL_WRITE_ONLY, GL_RGBA32UI);
+	const PictureShape& shape = target.shape;
 	const auto lines = static_cast<unsigned>(m_axis == 0 ? shape.height : shape.width);
 	return secondsOf(
 		[lines]

@@ -97,25 +97,11 @@ public:
 	GlTexture(int width, int height, int channels, const float* values);
 
 	// Empty, with levels or layers. An array texture if the format is counts.
-	explicit GlTexture(const PictureShape& shape);
+	explicit GlTexture(const PictureShape& of);
 
-	unsigned name() const
-	{
-		return m_name;
-	}
-	unsigned target() const
-	{
-		return m_target;
-	}
-	const PictureShape& shape() const
-	{
-		return m_shape;
-	}
-
-private:
-	PictureShape m_shape;
-	unsigned m_target = 0;
-	GlName m_name;
+	const PictureShape shape;
+	const unsigned target;
+	const GlName name;
 };
 
 // Marks the pixels that one pass discarded, for a later pass to fill. Uses a depth buffer, so skipped pixels cost almost nothing.
@@ -124,13 +110,7 @@ class GlLeft
 public:
 	GlLeft(int width, int height);
 
-	unsigned name() const
-	{
-		return m_name;
-	}
-
-private:
-	GlName m_name;
+	const GlName name;
 };
 
 // A program that runs this shader for every pixel of a picture. Throws Error (runtime) with the compiler's first error line.

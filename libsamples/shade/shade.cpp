@@ -357,7 +357,7 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 	shaded.renderer = context.renderer();
 	shaded.tables_by = compute ? "compute" : "fragments";
 	const GlTexture& last = *pictures[plan.passes.back().picture];
-	const bool quads = last.shape().format == PictureFormat::quad;
+	const bool quads = last.shape.format == PictureFormat::quad;
 	setResult(shaded, readFloats(last), quads);
 	setTimes(shaded, times);
 	return shaded;

@@ -192,11 +192,8 @@ std::string Candidate::method() const
 
 std::string Candidate::resolution() const
 {
-	if (kind == CandidateKind::asset && asset->resolution != nullptr)
-	{
-		return std::string(asset->resolution(*this));
-	}
-	return kind == CandidateKind::screen && shade.half_resolution ? "half" : "full";
+	const bool own = kind == CandidateKind::asset && asset->resolution != nullptr;
+	return own ? std::string(asset->resolution(*this)) : kind == CandidateKind::screen && shade.half_resolution ? "half" : "full";
 }
 
 std::string Candidate::name() const

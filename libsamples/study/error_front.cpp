@@ -3,7 +3,6 @@
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/lists.h"
-#include "study/error_points.h"
 #include "study/error_report.h"
 #include "study/front.h"
 
@@ -93,11 +92,8 @@ const ErrorView* viewNamed(const ErrorReport& report, const std::string& level, 
 
 void requireSame(const std::string& where, const char* what, double before, double now)
 {
-	if (before != now)
-	{
-		throw Error(ExitCode::invalid_input,
-					"baseline: " + where + ": " + what + ": found " + numberText(before) + ", expected " + numberText(now));
-	}
+	refuseIf(before != now, "baseline: " + where + ": " + what + ": found " + numberText(before) + ", expected " + numberText(now),
+			 ExitCode::invalid_input);
 }
 
 void compareViews(const std::string& level, const ErrorView& before, const ErrorView& now, const BaselineTolerance& tolerance,

@@ -186,11 +186,8 @@ std::vector<uint8_t> pictureFrom(const JsonValue& value, std::size_t pixels)
 		return {};
 	}
 	const std::optional<std::vector<uint8_t>> bytes = bytesOfBase64(value.string());
-	if (!bytes || bytes->size() != pixels)
-	{
-		value.fail(bytes ? std::to_string(bytes->size()) + " bytes" : "no base64",
-				   "a byte for each of " + std::to_string(pixels) + " pixels, in base64");
-	}
+	failIf(!bytes || bytes->size() != pixels, value, bytes ? std::to_string(bytes->size()) + " bytes" : "no base64",
+		   "a byte for each of " + std::to_string(pixels) + " pixels, in base64");
 	return *bytes;
 }
 

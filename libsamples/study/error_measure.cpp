@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measures a report's levels, one after the other; what a cache has is not measured again.
-#include "study/error_points.h"
 #include "study/error_report.h"
 #include "study/measure_view.h"
 
@@ -347,10 +346,8 @@ private:
 		ProgressCounter progress(m_run.progress, level.name + " " + camera.name, m_grid.size());
 		std::vector<std::string> failed;
 		const std::vector<Candidate> drawn = addPoints(on, bench, view, progress, failed);
-		if (drawn.empty() && !isShare(m_split))
-		{
-			throw Error(ExitCode::runtime, failed.empty() ? "every candidate was stopped" : failed.front());
-		}
+		refuseIf(drawn.empty() && !isShare(m_split), failed.empty() ? "every candidate was stopped" : failed.front(),
+				 ExitCode::runtime);
 		setFront(view); // in a part: of its own points, among which is all that is on the front of all
 		shareFlicker(on, bench, drawn, view);
 		addLimit(on, view);

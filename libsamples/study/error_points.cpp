@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/error_points.h"
+#include "study/error_report.h"
 
 #include "core/lists.h"
 #include "methods/method_table.h"

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -93,6 +94,7 @@ struct ScreenLimit
 	double power = 1.0;
 	ViewErrors errors;
 };
+void visit(Archive& archive, ScreenLimit& limit);
 
 struct ErrorView
 {
@@ -144,6 +146,32 @@ ErrorReport measureErrors(const ErrorReportSettings& settings, const RunSettings
 
 // Sets `front` of every point and the share.
 void setFront(ErrorView& view);
+
+// Which candidates share what takes long to make, and about how long each takes: how a report is shared out.
+
+// Candidates of one name draw the same samples, on whatever level, or the same volumes or bake of this level. `level`: any name
+// that is its own.
+std::string sharedBy(const Candidate& candidate, const std::string& level);
+
+// The facts of a view that its costs depend on.
+struct ViewCost
+{
+	std::string level; // a name that is its own
+	std::size_t pixels = 0;
+	std::size_t triangles = 0; // of its level
+	int repetitions = 0;
+};
+
+// Estimates of the seconds that each candidate takes on one thread. The first candidate of each name bears what is made once.
+// `made`: the names of views before; grows.
+std::vector<double> candidateSeconds(std::span<const Candidate> candidates, const ViewCost& view, std::set<std::string>& made);
+
+// Returns at most `count` points: the front's, evenly spaced, and the best recipe of each method.
+std::set<std::size_t> chosenPoints(const ErrorView& view, std::size_t count);
+
+// Returns all that chosenPoints() chooses from: the front, and the best recipe of each method. With some of a view's points and
+// their own front, the result contains whatever of them is chosen from all points.
+std::set<std::size_t> likelyPoints(const ErrorView& view);
 
 // Schema "nook.error-report/1": everything that the page shows.
 nlohmann::ordered_json errorReportFields(const ErrorReport& report);

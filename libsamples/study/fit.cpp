@@ -37,15 +37,11 @@ constexpr SliceSettings kFitSlices{.count = 2, .steps = 6};
 constexpr std::string_view kStrength = "--strength";
 constexpr std::string_view kPower = "--power";
 
-bool isShape(const RecipeValue& value)
-{
-	return value.feature->option == kStrength || value.feature->option == kPower;
-}
-
 // The search varies positive numbers only, never one that may be 0.
 bool isVaried(const RecipeValue& value)
 {
-	return value.feature->kind == FeatureKind::number && !isShape(value) && value.value > 0.0;
+	const bool shapes = value.feature->option == kStrength || value.feature->option == kPower;
+	return value.feature->kind == FeatureKind::number && !shapes && value.value > 0.0;
 }
 
 struct FitView

@@ -7,6 +7,7 @@
 #include "core/math.h"
 #include "core/text.h"
 #include "core/work_units.h"
+#include "format/notes.h"
 #include "page/assets.h"
 #include "page/page_fill.h"
 #include "pattern/recipe.h"
@@ -170,36 +171,27 @@ double costOf(const NoiseRow& row)
 	return 50.0 + each * std::max(1, row.recipe.starts) * (count + count * count / 8.0);
 }
 
-template <auto kField> std::optional<double> fieldOf(const Quality& quality)
-{
-	return quality.*kField;
-}
-
 // The measures that the page offers.
-struct MeasureField
+constexpr std::array kMeasures{"noise", "plane", "bias", "cliff", "centre", "crease", "spread"};
+
+std::optional<double> measureOf(const Quality& quality, std::string_view name)
 {
-	std::string_view name;
-	std::optional<double> (*get)(const Quality& quality);
-};
-constexpr std::array<MeasureField, 7> kMeasures{{{"noise", fieldOf<&Quality::noise>},
-												 {"plane", fieldOf<&Quality::plane>},
-												 {"bias", fieldOf<&Quality::bias>},
-												 {"cliff", fieldOf<&Quality::cliff>},
-												 {"centre", fieldOf<&Quality::centre>},
-												 {"crease", fieldOf<&Quality::crease>},
-												 {"spread", fieldOf<&Quality::spread>}}};
+	const std::vector<Measure> all = measuresOf(quality);
+	const auto found = std::find_if(all.begin(), all.end(), [name](const Measure& one) { return one.name == name; });
+	return found != all.end() ? std::optional(found->value) : std::nullopt;
+}
 
 std::vector<NoiseFit> fitTrends(const std::vector<NoiseRow>& rows)
 {
 	std::vector<NoiseFit> fits;
 	for (const Domain domain : {Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere})
 	{
-		for (const MeasureField& measure : kMeasures)
+		for (const char* const measure : kMeasures)
 		{
 			std::map<int, double> values;
 			for (const NoiseRow& row : rows)
 			{
-				const std::optional<double> value = measure.get(row.quality);
+				const std::optional<double> value = measureOf(row.quality, measure);
 				if (value && row.recipe.domain == domain && row.variant == Variant::free && row.recipe.method == Method::refine)
 				{
 					values[row.recipe.count] = *value;
@@ -207,7 +199,7 @@ std::vector<NoiseFit> fitTrends(const std::vector<NoiseRow>& rows)
 			}
 			if (const std::optional<PowerFit> fit = fitPower(values))
 			{
-				fits.push_back({domain, std::string(measure.name), fit->factor, fit->exponent});
+				fits.push_back({domain, measure, fit->factor, fit->exponent});
 			}
 		}
 	}
@@ -245,14 +237,12 @@ std::vector<const NoiseRow*> rowsOf(const NoiseReport& report, Domain domain, Va
 Json measuresJson(const std::vector<const NoiseRow*>& rows)
 {
 	Json measures = Json::object();
-	for (const MeasureField& field : kMeasures)
+	for (const char* const measure : kMeasures)
 	{
-		if (!field.get(rows.front()->quality))
+		if (measureOf(rows.front()->quality, measure)) // this domain defines it
 		{
-			continue; // this domain does not define it
+			measures[measure] = mapped(rows, [&](const NoiseRow* row) { return optionalNumber(measureOf(row->quality, measure)); });
 		}
-		measures[std::string(field.name)] =
-			mapped(rows, [&](const NoiseRow* row) { return optionalNumber(field.get(row->quality)); });
 	}
 	return measures;
 }

@@ -32,11 +32,8 @@ std::vector<Candidate> screenCandidates(const TimesSettings& settings)
 			chosen[i] = chosen[i] || begins;
 			found = found || begins;
 		}
-		if (!found)
-		{
-			throw Error(ExitCode::usage, "--only: found '" + words + "', expected the beginning of a candidate's name, such as '" +
-											 grid.front().method() + "' or '" + grid.front().name() + "'");
-		}
+		refuseIf(!found, "--only: found '" + words + "', expected the beginning of a candidate's name, such as '" +
+							 grid.front().method() + "' or '" + grid.front().name() + "'");
 	}
 	return mapped(indicesWhere(grid.size(), [&](std::size_t i) { return chosen[i]; }), [&](std::size_t i) { return grid[i]; });
 }

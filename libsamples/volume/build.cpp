@@ -387,10 +387,7 @@ uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings)
 BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& wanted, const RunSettings& run)
 {
 	assert(wanted.distance_m > 0.0 && std::isfinite(wanted.distance_m));
-	if (level.triangles.empty())
-	{
-		throw Error(ExitCode::invalid_input, level.name + ": triangles: found none, expected at least one");
-	}
+	refuseIf(level.triangles.empty(), level.name + ": triangles: found none, expected at least one", ExitCode::invalid_input);
 	BuiltVolumes built;
 	const VolumeSettings settings = withinMemory(level, wanted, built);
 	VolumeSet& set = built.set;

@@ -332,11 +332,9 @@ void VolumeEvaluator::Data::build(const RunSettings& run)
 	rtcAttachGeometryByID(scene, geometry, 0);
 	rtcReleaseGeometry(geometry);
 	onThreads(run.threads, [this] { rtcCommitScene(scene); });
-	if (rtcGetDeviceError(device) != RTC_ERROR_NONE)
-	{
-		throw Error(ExitCode::runtime,
-					"volumes: found no memory left for a tree of " + std::to_string(boxes.size()) + " volumes, expected more");
-	}
+	refuseIf(rtcGetDeviceError(device) != RTC_ERROR_NONE,
+			 "volumes: found no memory left for a tree of " + std::to_string(boxes.size()) + " volumes, expected more",
+			 ExitCode::runtime);
 }
 
 VolumeEvaluator::VolumeEvaluator(const VolumeSet& volumes, const RunSettings& run) : m_data(std::make_unique<Data>(volumes))

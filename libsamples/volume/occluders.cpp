@@ -552,11 +552,10 @@ void cutLong(Occluding& result, const Soup& soup, const std::vector<uint32_t>& l
 	{
 		settings.before_cutting(pieces);
 	}
-	if (pieces > kMostPieces)
-	{
-		throw Error(ExitCode::runtime, soup.level->name + ": extent: found up to " + std::to_string(pieces) +
-										   " polygons, expected at most " + std::to_string(kMostPieces) + " (a longer extent)");
-	}
+	refuseIf(pieces > kMostPieces,
+			 soup.level->name + ": extent: found up to " + std::to_string(pieces) + " polygons, expected at most " +
+				 std::to_string(kMostPieces) + " (a longer extent)",
+			 ExitCode::runtime);
 	result.occluders = cutOccluders(soup, result.occluders, looks, counts.extent_m, counts);
 	counts.two_sided = static_cast<uint64_t>(std::count_if(result.occluders.polygons.begin(), result.occluders.polygons.end(),
 														   [](const Occluder& polygon) { return polygon.two_sided; }));
@@ -621,10 +620,8 @@ Occluding occludersOf(const Level& level, const OccluderSettings& settings, cons
 	}
 	counts.polygons = result.occluders.polygons.size();
 	counts.corners = result.occluders.corners.size();
-	if (result.occluders.polygons.empty())
-	{
-		throw Error(ExitCode::invalid_input, level.name + ": found no surface that blocks light, expected a polygon");
-	}
+	refuseIf(result.occluders.polygons.empty(), level.name + ": found no surface that blocks light, expected a polygon",
+			 ExitCode::invalid_input);
 	return result;
 }
 

@@ -4,6 +4,7 @@
 #include "bake/texture.h"
 #include "core/lists.h"
 #include "core/words.h"
+#include "scene/ray_triangle.h"
 #include "scene/topology.h"
 
 #include <glm/geometric.hpp>

@@ -25,7 +25,6 @@ namespace
 {
 
 constexpr std::string_view kMagic{"Kaydara FBX Binary  \0\x1a", 22};
-constexpr std::size_t kHeaderSize = 27;
 constexpr int kMaxNesting = 64;          // maximum nesting; exporters need ten
 constexpr uint64_t kMaxExpansion = 1032; // zlib's maximum: 258 bytes from two bits
 constexpr uint32_t kFirstVersion = 7100;

@@ -24,6 +24,9 @@ checks=$((checks + 1))
 checks=$((checks + 1))
 mkdir public && "$nook" bake builtin:cornell --radius 1 --rays 16 -o public/baked.glb >"$folder/log" || problem "nook bake: failed"
 "$nook" volumes builtin:cornell --distance 0.4 -o public/volumes.glb >"$folder/log" || problem "nook volumes: failed"
+"$nook" volumes builtin:cornell --distance 0.4 --compress -o public/packed.glb >"$folder/log" || problem "nook volumes: failed"
+checks=$((checks + 1))
+node packed.mjs public "$nook" >"$folder/log" 2>&1 || problem "packed volumes: $(tail -n 5 "$folder/log")"
 checks=$((checks + 1))
 "$tools/vite" build --outDir "$folder/vite" --logLevel error >"$folder/log" 2>&1 || problem "vite build: $(tail -n 5 "$folder/log")"
 # A bundle holds only what it uses: of the passes nothing, with bakes alone.
@@ -46,7 +49,7 @@ node - said <<-'JS' >log 2>&1 || problem "the page: $(head -c 600 log)"
 	const bounds = { infinite: 1e-3, logarithmicDepthBuffer: 2e-3, reversedDepthBuffer: 2e-3, reversedHalf: 0.03, orthographic: 4e-3, half: 0.03,
 		normals: 0.01, smooth: 1, castingNormals: 0, card: 0.05, points: 0, temporal: [1e-6, 0.2], multisampled: 0.06, intensity: 2e-3, tint: 0, product: 1e-3, view: 0, split: [0, 0], afterRender: 0,
 		twice: 1e-3, postprocessing: 0, postTwice: 1e-3, postScene: 0, postMultisampled: 0, postResized: 0, postLayers: 0, postTransparent: 0, postRestored: 0, transparent: 0, over: 1e-3, layers: 0, casting: 0, bakedOnly: 1e-3, resized: 0, changed: 0, restoredContext: 0,
-		tinted: 0, lower: 2e-3, volumesReversed: 3e-3 };
+		tinted: 0, lower: 2e-3, volumesReversed: 3e-3, volumesPacked: 1e-5 };
 	const rest = { sky: 1, restored: [9, true, 0x8080ff], meshes: 1, level: true, kept: true, noVolumes: null, nothing: null, memory: 0,
 		disposed: 'Error: NookPass: found render after dispose, expected a new pass',
 		postDisposed: 'Error: NookPass: found render after dispose, expected a new pass',

@@ -60,14 +60,14 @@ TEST_CASE("volume: clusters cover all polygons, hold what they reach, and are no
 	CHECK(after.clusters.size() < 60);
 }
 
-TEST_CASE("volume: clusters are tight, and larger polygons come first", "[volume][clusters]")
+TEST_CASE("volume: clusters are tight, and neighbours follow one another", "[volume][clusters]")
 {
 	Level level = test::emptyLevel();
 	for (int x = 0; x < 64; ++x)
 	{
 		for (int z = 0; z < 64; ++z)
 		{
-			test::addQuad(level, {x, 0.0, z}, {0.0, 0.0, 0.5}, {0.25 + 0.001 * (x ^ z), 0.0, 0.0});
+			test::addQuad(level, {x, 0.0, z}, {0.0, 0.0, 0.5}, {0.25, 0.0, 0.0});
 		}
 	}
 	const VolumeSet volumes = test::volumesOf(level, 1.0, 128);
@@ -77,15 +77,12 @@ TEST_CASE("volume: clusters are tight, and larger polygons come first", "[volume
 		// 32 quads of one square metre, plus up to 2 m at sharp corners.
 		const glm::dvec3 size = cluster.most - cluster.least;
 		REQUIRE(size.x * size.z < 13.0 * 13.0);
-		double before = 1e300;
-		for (uint32_t p = cluster.first_polygon; p < cluster.first_polygon + cluster.polygon_count; ++p)
+		double steps = 0.0; // from polygon to polygon; in rows, the ways back would take more
+		for (uint32_t p = cluster.first_polygon + 1; p < cluster.first_polygon + cluster.polygon_count; ++p)
 		{
-			const Corners corners = cornersOf(volumes, p);
-			const double share = static_cast<double>(volumes.occluders.polygons[p].alpha) *
-								 glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
-			REQUIRE(share <= before + 1e-3); // rounded after sorting
-			before = share;
+			steps += glm::distance(cornersOf(volumes, p)[0], cornersOf(volumes, p - 1)[0]);
 		}
+		REQUIRE(steps < 2.0 * cluster.polygon_count);
 	}
 }
 

@@ -155,7 +155,7 @@ function volumeStages() {
 		return readFileSync(join(scratch, `aov.${ending}`), 'utf8');
 	});
 	const wgsl = replaced(replaced(untyped(files[1]), /return nook_faces == 0.*/, 'return true;'), 'return textureLoad(nook_normals, pixel, 0).xyz;', 'return normalize(textureLoad(nook_normals, pixel, 0).xyz * 2.0 - 1.0);');
-	return [without(bare(files[0]), ['NOOK_SPARSE', 'NOOK_CHOOSE_FACES', 'NOOK_PRISMS']),
+	return [withoutUnused(without(bare(files[0]), ['NOOK_SPARSE', 'NOOK_CHOOSE_FACES', 'NOOK_PRISMS']), 'main'),
 		withoutUnused(bare(wgsl.replace(/.*\bvar(?:<uniform>)? nook_(?:faces|cells)\b.*\n/g, '')), 'nook_vertex nook_fragment nook_resolve nook_triangle')];
 }
 

@@ -84,9 +84,9 @@ export class NookAO {
 /** Multiplies ambient light by the visibility that `nook bake` stored at vertices. Returns the number of meshes that have it. */
 export function useBakedVisibility(root: Object3D): number;
 
-/** Static occlusion from a file of `nook volumes`, which was not made with --compress. Throws a RangeError for another file. */
+/** Occlusion from a file of `nook volumes`; decoder: MeshoptDecoder, for files of --compress. Throws a RangeError for another file. */
 export class NookVolumes {
-	constructor(buffer: ArrayBuffer | Uint8Array);
+	constructor(buffer: ArrayBuffer | Uint8Array, decoder?: object);
 	/** Visibility of the last frame, 1 where open, in the first channel; null before the first. */
 	get texture(): Texture | null;
 	/** Draws over depths and normals of a NookAO. Returns false, and draws nothing, where the context is lost. */

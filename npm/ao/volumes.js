@@ -15,8 +15,8 @@ uniform sampler2D nook_normals;
 
 /** The occlusion of a level's volumes, drawn over depths and normals of a frame. */
 export class NookVolumes {
-	constructor(buffer) {
-		this._volumes = readVolumes(buffer);
+	constructor(buffer, decoder) {
+		this._volumes = readVolumes(buffer, decoder);
 		this._texture = new ExternalTexture(null);
 		this._disposed = false;
 		this._lost = () => { this._gl = null; };

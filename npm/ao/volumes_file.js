@@ -2,57 +2,101 @@
 // Reads a file of `nook volumes` and prepares frames for the shaders of `nook emit --methods aov`: nook_volumes.h and
 // nook_volumes_draw.h in JavaScript, with the same bytes. No dependencies.
 //
-//	const volumes = readVolumes(await (await fetch('level.glb')).arrayBuffer()); // throws RangeError
+//	const volumes = readVolumes(await (await fetch('level.glb')).arrayBuffer()); // throws RangeError; files of --compress: MeshoptDecoder
 //	const frame = new VolumesFrame(volumes);
 //	frame.set({ cameraFromWorld, projection, width, height }); // matrices column by column
 //	upload(frame.block, frame.seen); // 384 bytes; 16 32-bit integers per cluster
 //	for (const i of frame.inSight()) draw(volumes.clusters[i]);
 
 const kStrides = [128, 8, 8, 2, 8]; // of clusters, polygons, corners, indices, vertices
-const kCompressed = 'compressed arrays, expected a file made without --compress';
 
-function require(holds, what) {
+function require(holds, what = 'broken bytes') {
 	if (!holds) throw new RangeError(`volumes: found ${what}`);
 }
 
 // Returns {distance, rayDistance, planeError, sumRange, occlusion, exactBounds, hasPrisms, clusters, polygons, corners, indices,
-// vertices}: arrays as in the file, typed, without copies. Every index of the result is in range. Throws RangeError.
-export function readVolumes(buffer) {
+// vertices}: arrays as in the file, typed; only those of compressed files are copies. Every index of the result is in range. decoder:
+// MeshoptDecoder of meshoptimizer, after its `ready`, for files of --compress. Throws RangeError.
+export function readVolumes(buffer, decoder) {
 	const bytes = buffer instanceof ArrayBuffer ? new Uint8Array(buffer) : new Uint8Array(buffer.buffer, buffer.byteOffset, buffer.byteLength);
 	const size = bytes.byteLength, view = new DataView(bytes.buffer, bytes.byteOffset, size), word = at => view.getUint32(at, true);
 	require(size >= 20 && word(0) === 0x46546c67 && word(4) === 2, 'no binary glTF 2.0');
 	require(word(8) === size, 'another length than the file says');
 	const text = word(12);
-	require(word(16) === 0x4e4f534a && text <= size - 28, 'no chunk of JSON before a binary one');
+	require(word(16) === 0x4e4f534a && text <= size - 28);
 	const length = word(20 + text), start = 28 + text;
-	require(word(24 + text) === 0x004e4942 && length <= size - start, 'no binary chunk');
+	require(word(24 + text) === 0x004e4942 && length <= size - start);
 	require(length >= 464 && String.fromCharCode(...bytes.subarray(start, start + 8)) === 'NOOKVOLS', 'glTF without volumes of nook');
 	require(word(start + 8) === 1, 'another version of the format than 1');
 	const flags = word(start + 12), number = at => view.getFloat64(start + at, true);
-	require((flags & ~3) === 0, (flags & ~7) === 0 ? kCompressed : 'unknown flags');
+	require((flags & ~7) === 0 && (flags & 6) !== 6);
 	const volumes = { exactBounds: (flags & 1) !== 0, hasPrisms: (flags & 2) !== 0, distance: number(16), rayDistance: number(24),
 		planeError: number(64), sumRange: number(72), occlusion: Array.from({ length: 33 }, (_, i) => number(80 + 8 * i)) };
 	const { distance, rayDistance, planeError, sumRange, occlusion } = volumes;
 	require([distance, sumRange].every(one => one >= 1e-30 && one <= 1e30) && [rayDistance, planeError].every(one => one >= 0 && one <= 1e30) &&
-		occlusion.every((one, i) => one >= (i > 0 ? occlusion[i - 1] : 0) && one <= 1), 'numbers out of range in the header');
-	const items = kStrides.map((stride, i) => arrayOf(view, start, length, 344 + 24 * i, stride));
+		occlusion.every((one, i) => one >= (i > 0 ? occlusion[i - 1] : 0) && one <= 1));
+	const items = kStrides.map((stride, i) => arrayOf(view, start, length, 344 + 24 * i, stride, decoder));
 	volumes.clusters = clustersOf(items[0]);
 	const shorts = ({ bytes: some }) => new Uint16Array(some.buffer, some.byteOffset, some.byteLength / 2);
 	volumes.polygons = new Uint32Array(items[1].bytes.buffer, items[1].bytes.byteOffset, 2 * items[1].count);
 	[volumes.corners, volumes.indices, volumes.vertices] = items.slice(2).map(shorts);
-	checkVolumes(volumes, items.map(({ count }) => count));
+	const counts = [1, 2, 4, 3].map(i => items[i].count);
+	if ((flags & 4) !== 0) counts[1] = (volumes.corners = cornersOf(volumes, counts)).length / 4;
+	checkVolumes(volumes, (flags & 6) !== 0, counts);
 	return volumes;
 }
 
-function arrayOf(view, start, length, at, stride) {
+function arrayOf(view, start, length, at, stride, decoder) {
 	const offset = Number(view.getBigUint64(start + at, true)), size = Number(view.getBigUint64(start + at + 8, true));
 	const count = view.getUint32(start + at + 16, true);
-	require(offset % 16 === 0 && offset <= length && size <= length - offset, 'an array that reaches beyond the file');
-	require(view.getUint16(start + at + 20, true) === stride, 'an array with items of another size');
-	require(view.getUint16(start + at + 22, true) === 0, kCompressed);
-	require(count * stride === size, 'an array with another length than its items');
-	const place = view.byteOffset + start + offset;
+	require(offset % 16 === 0 && offset <= length && size <= length - offset);
+	require(view.getUint16(start + at + 20, true) === stride);
+	const encoding = view.getUint16(start + at + 22, true), place = view.byteOffset + start + offset;
+	if (encoding === (stride === 2 ? 2 : 1)) {
+		require(decoder, 'compressed arrays, and no decoder');
+		require(count * stride <= 64 * size && (stride > 2 || count % 3 === 0));
+		const bytes = new Uint8Array(count * stride), source = new Uint8Array(view.buffer, place, size);
+		try {
+			decoder[stride === 2 ? 'decodeIndexBuffer' : 'decodeVertexBuffer'](bytes, count, stride, source);
+		} catch {
+			require(false);
+		}
+		return { count, bytes };
+	}
+	require(encoding === 0 && count * stride === size);
 	return { count, bytes: place % 16 === 0 ? new Uint8Array(view.buffer, place, size) : new Uint8Array(view.buffer.slice(place, place + size)) };
+}
+
+// The corners of polygons, from the triangles of a file that stores shared corners as vertices. A polygon of n corners has n - 2
+// triangles; each after its first adds a corner behind the one before it in the triangle.
+function cornersOf({ clusters, polygons, indices, vertices }, [polygonCount, cornerCount, vertexCount, indexCount]) {
+	let sum = 0, at = 0, to = 0, polygon = 0;
+	for (let i = 1; i < polygons.length; i += 2) {
+		require((polygons[i] & 31) >= 3 && (polygons[i] & 31) <= 16);
+		sum += polygons[i] & 31;
+	}
+	require(cornerCount === 0 && indexCount === 3 * (sum - 2 * polygonCount));
+	const corners = new Uint16Array(4 * sum);
+	for (const { polygonCount: own, firstVertex, vertexCount: size } of clusters) {
+		require(polygon + own <= polygonCount && firstVertex + size <= vertexCount);
+		for (let i = 0; i < own; ++i, ++polygon) {
+			const ring = [...indices.subarray(at, at + 3)], count = polygons[2 * polygon + 1] & 31;
+			while (ring.length < count) {
+				const next = indices.subarray(at += 3, at + 3), own = next.findIndex(one => !ring.includes(one));
+				const before = ring.indexOf(next[(own + 2) % 3]);
+				require(own >= 0 && before >= 0);
+				ring.splice(before + 1, 0, next[own]);
+			}
+			at += 3;
+			for (const one of ring) {
+				require(one < size);
+				corners.set(vertices.subarray(4 * (firstVertex + one), 4 * (firstVertex + one) + 3), to);
+				corners[to + 3] = i;
+				to += 4;
+			}
+		}
+	}
+	return corners;
 }
 
 function clustersOf({ bytes, count }) {
@@ -67,36 +111,26 @@ function clustersOf({ bytes, count }) {
 	});
 }
 
-function checkVolumes({ clusters, polygons, corners, indices, vertices, hasPrisms }, [, polygonCount, cornerCount, indexCount, vertexCount]) {
-	const next = { polygon: 0, corner: 0, vertex: 0, index: 0 }, within = (value, least, most) => value >= least && value <= most;
-	for (const cluster of clusters) {
-		require(cluster.firstPolygon === next.polygon && cluster.firstCorner === next.corner && cluster.firstVertex === next.vertex &&
-			cluster.firstIndex === next.index, 'clusters with gaps between them');
-		next.polygon += cluster.polygonCount;
-		next.corner += cluster.cornerCount;
-		next.vertex += cluster.vertexCount;
-		next.index += cluster.indexCount;
-		require(next.polygon <= polygonCount && next.corner <= cornerCount && next.vertex <= vertexCount && next.index <= indexCount,
-			'clusters of more than there is');
-		require(within(cluster.polygonCount, 1, 65536) && [0, 1, 2].every(i => within(cluster.origin[i], -1e30, 1e30) &&
-			within(cluster.vertexOrigin[i], -1e30, 1e30) && within(cluster.step[i], 1e-30, 1e30) && within(cluster.vertexStep[i], 0, 1e30) &&
-			within(cluster.least[i], -1e30, 1e30) && within(cluster.most[i], cluster.least[i], 1e30)), 'numbers out of range in a cluster');
-		let corner = cluster.firstCorner;
-		for (let i = 0; i < cluster.polygonCount; ++i) {
-			const own = polygons[2 * (cluster.firstPolygon + i) + 1], count = own & 31;
-			require(polygons[2 * (cluster.firstPolygon + i)] === corner && within(count, 3, 16) && own >>> 16 > 0, 'a polygon that cannot be');
-			require(corner + count <= next.corner, 'polygons of more corners than their cluster');
-			for (const end = corner + count; corner < end; ++corner) require(corners[4 * corner + 3] === i, 'a corner of another polygon');
+// counts: of polygons, corners, vertices and indices, as the ranges of clusters.
+function checkVolumes({ clusters, polygons, corners, indices, vertices }, hasVertices, counts) {
+	const ends = [0, 0, 0, 0], within = (value, least, most) => value >= least && value <= most;
+	for (const { origin, vertexOrigin, step, vertexStep, least, most, firstPolygon, polygonCount, firstCorner, cornerCount, firstVertex, vertexCount,
+		firstIndex, indexCount } of clusters) {
+		[firstPolygon, firstCorner, firstVertex, firstIndex].forEach((first, i) => require(first === ends[i]));
+		[polygonCount, cornerCount, vertexCount, indexCount].forEach((count, i) => require((ends[i] += count) <= counts[i]));
+		require(within(polygonCount, 1, 65536) && [0, 1, 2].every(i => within(origin[i], -1e30, 1e30) && within(vertexOrigin[i], -1e30, 1e30) &&
+			within(step[i], 1e-30, 1e30) && within(vertexStep[i], 0, 1e30) && within(least[i], -1e30, 1e30) && within(most[i], least[i], 1e30)));
+		let corner = firstCorner;
+		for (let i = 0; i < polygonCount; ++i) {
+			const own = polygons[2 * (firstPolygon + i) + 1], count = own & 31;
+			require(polygons[2 * (firstPolygon + i)] === corner && within(count, 3, 16) && own >>> 16 > 0 && corner + count <= ends[1]);
+			for (const end = corner + count; corner < end; ++corner) require(corners[4 * corner + 3] === i);
 		}
-		require(corner === next.corner, 'corners without a polygon');
-		require(cluster.indexCount % 3 === 0 && (hasPrisms || cluster.vertexCount === 0), 'a cluster with a part of a triangle');
-		for (let i = cluster.firstIndex; i < next.index; ++i) {
-			require(indices[i] < (hasPrisms ? cluster.vertexCount : cluster.cornerCount), 'an index beyond its cluster');
-		}
-		for (let i = cluster.firstVertex; i < next.vertex; ++i) require(vertices[4 * i + 3] < cluster.polygonCount, 'a prism of no polygon');
+		require(corner === ends[1] && indexCount % 3 === 0 && (hasVertices || vertexCount === 0));
+		for (let i = firstIndex; i < ends[3]; ++i) require(indices[i] < (hasVertices ? vertexCount : cornerCount));
+		for (let i = firstVertex; i < ends[2]; ++i) require(vertices[4 * i + 3] < polygonCount);
 	}
-	require(next.polygon === polygonCount && next.corner === cornerCount && next.vertex === vertexCount && next.index === indexCount,
-		'clusters of less than there is');
+	require(ends.every((end, i) => end === counts[i]));
 }
 
 const isUsualW = (x, y, z, one) => x === 0 && y === 0 && ((Math.abs(Math.abs(z) - 1) <= 1e-5 && one === 0) || (z === 0 && one !== 0));

@@ -5,8 +5,8 @@ import { readVolumes, VolumesFrame } from './volumes_file.js';
 
 /** The occlusion of a level's volumes, drawn over depths and normals of a frame. */
 export class NookVolumes {
-	constructor(buffer) {
-		this._volumes = readVolumes(buffer);
+	constructor(buffer, decoder) {
+		this._volumes = readVolumes(buffer, decoder);
 		this._frame = new VolumesFrame(this._volumes);
 		this._device = null;
 		this._disposed = false;

@@ -23,9 +23,9 @@ export interface NookPassNode extends PassNode, Required<Omit<NookNodeOptions, '
 /** For the RenderPipeline of WebGPURenderer, in place of pass(scene, camera). Throws where the renderer has no WebGPU. */
 export function nookPass(scene: Scene, camera: Camera, options?: NookNodeOptions): NookPassNode;
 
-/** Static occlusion from a file of `nook volumes`, which was not made with --compress. Throws a RangeError for another file. */
+/** Occlusion from a file of `nook volumes`; decoder: MeshoptDecoder, for files of --compress. Throws a RangeError for another file. */
 export class NookVolumes {
-	constructor(buffer: ArrayBuffer | Uint8Array);
+	constructor(buffer: ArrayBuffer | Uint8Array, decoder?: object);
 	/** Frees everything. Further calls do nothing. */
 	dispose(): void;
 }

@@ -425,24 +425,30 @@ private:
 	static bool joinTriangles(const std::uint16_t* triangle, std::uint32_t count, std::uint16_t (&ring)[kMostCorners])
 	{
 		std::memcpy(ring, triangle, 3 * sizeof *ring);
+		const auto placeOf = [&ring](std::uint32_t size, std::uint16_t corner)
+		{
+			std::uint32_t place = 0;
+			while (place < size && ring[place] != corner)
+			{
+				++place;
+			}
+			return place;
+		};
 		for (std::uint32_t n = 3; n < count; ++n)
 		{
 			triangle += 3;
-			std::uint32_t at = 0; // edge at / 3 of the ring, edge at % 3 of the triangle
-			const auto shares = [&](std::uint32_t pair)
+			std::uint32_t added = 0; // its corner that the ring lacks
+			while (added < 3 && placeOf(n, triangle[added]) < n)
 			{
-				return triangle[pair % 3] == ring[(pair / 3 + 1) % n] && triangle[(pair + 1) % 3] == ring[pair / 3];
-			};
-			while (at < 3 * n && !shares(at))
-			{
-				++at;
+				++added;
 			}
-			if (at == 3 * n)
+			const std::uint32_t before = placeOf(n, triangle[(added + 2) % 3]);
+			if (added == 3 || before == n || ring[(before + 1) % n] != triangle[(added + 1) % 3])
 			{
 				return false;
 			}
-			std::memmove(ring + at / 3 + 2, ring + at / 3 + 1, (n - 1 - at / 3) * sizeof *ring);
-			ring[at / 3 + 1] = triangle[(at + 2) % 3];
+			std::memmove(ring + before + 2, ring + before + 1, (n - 1 - before) * sizeof *ring);
+			ring[before + 1] = triangle[added];
 		}
 		return true;
 	}

@@ -39,4 +39,4 @@ for (let i = 0; i < bytes.length; i += 7) {
 		++refused;
 	}
 }
-if (refused < bytes.length / 70) throw new Error(`found ${refused} changed files refused, expected more`);
+if (refused < 50) throw new Error(`found ${refused} changed files refused, expected more`); // most bytes are of the JSON, which is not read

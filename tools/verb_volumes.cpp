@@ -222,7 +222,7 @@ void run(VolumeOptions& options, VerbProgress& progress)
 	{
 		return;
 	}
-	clusterVolumes(built.set, {}, how);
+	clusterVolumes(built.set, settings.masks ? kMaskClusters : ClusterSettings{}, how);
 	const VolumeFile file = volumeGlb(built.set, options.file, loaded.level.name, "nook " NOOK_VERSION, how);
 	std::optional<VerifyResult> quantised;
 	if (built.verified)

@@ -84,7 +84,7 @@ std::unique_ptr<LevelAsset> makeVolumes(const AssetSource& source, const AssetSe
 		settings.compensate.emplace();
 	}
 	BuiltVolumes built = buildVolumes(source.level, settings, run);
-	clusterVolumes(built.set, {}, run);
+	clusterVolumes(built.set, settings.masks ? kMaskClusters : ClusterSettings{}, run);
 	return std::make_unique<VolumeAsset>(std::move(built.set), source.level.name, run);
 }
 

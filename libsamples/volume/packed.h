@@ -20,7 +20,7 @@ struct PackedVolumes
 	std::vector<nook_volumes::Polygon> polygons;
 	std::vector<nook_volumes::Corner> corners;
 	std::vector<nook_volumes::Corner> vertices; // prisms: a polygon's lower ring, then its upper one; or shared corners; else empty
-	std::vector<uint16_t> indices;              // triangles relative to their cluster's first vertex (without vertices: first corner)
+	std::vector<uint16_t> indices; // triangles relative to their cluster's first vertex (without vertices: first corner)
 
 	// Effects of 16-bit rounding.
 	double greatest_error_m = 0.0; // position error of a corner

@@ -28,9 +28,9 @@ namespace
 
 constexpr double kMost = 65535.0;
 
-// At least a micrometre, or for volumes that reach less than 16 384 of them, that fraction of the reach. Larger where that only
-// saves bytes: half a step is less than the distance that receivers keep from a polygon's plane (1e-4 δ), and tilts a polygon that
-// is `size_m` across by less than a degree.
+// At least a micrometre, or a 16 384th of the reach if that is less. Finer steps than these would only cost bytes: half a step is
+// less than the distance that receivers keep from a polygon's plane (1e-4 δ), and tilts a polygon that is `size_m` across by less
+// than a degree.
 double leastStep(double distance_m, double size_m)
 {
 	const double least = std::min(0x1p-20, std::ldexp(1.0, std::ilogb(distance_m) - 14));

@@ -37,7 +37,8 @@ struct PackSettings
 };
 
 // Corners are rounded to stay close to the planes of their polygons, rather than to the nearest grid point: a surface must not be
-// darkened by its own polygon. Requires clusters of at most 2048 polygons. Repacking the result of unpacked() changes no corner.
+// darkened by its own polygon. Requires clusters of at most 2048 polygons. Repacking the result of unpacked() changes no
+// corner, except where rounding has moved a cluster's small polygons across a power of two: then steps double.
 PackedVolumes packVolumes(const VolumeSet& volumes, const PackSettings& settings, const RunSettings& run);
 
 // Decodes polygons and clusters; `volumes` supplies distance, curve and so on, and its plane_error_m grows.

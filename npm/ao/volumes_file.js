@@ -111,7 +111,7 @@ function clustersOf({ bytes, count }) {
 	});
 }
 
-// counts: of polygons, corners, vertices and indices, as the ranges of clusters.
+// counts: the numbers of polygons, corners, vertices and indices.
 function checkVolumes({ clusters, polygons, corners, indices, vertices }, hasVertices, counts) {
 	const ends = [0, 0, 0, 0], within = (value, least, most) => value >= least && value <= most;
 	for (const { origin, vertexOrigin, step, vertexStep, least, most, firstPolygon, polygonCount, firstCorner, cornerCount, firstVertex, vertexCount,

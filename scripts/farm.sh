@@ -157,12 +157,20 @@ singleRuns()
 	done
 }
 
-# killOne FOLDER: sends SIGKILL to the nook of a running job and to the script around it. The job must not be finished.
+# runningJob FOLDER: the process of a share of that plan. Other plans with the same names may be under way elsewhere.
+runningJob()
+{
+	for pid in $(pgrep -f -- "--cache .*$1/cache .*--share"); do
+		[ "$(readlink "/proc/$pid/cwd")" != "$scratch" ] || { echo "$pid" && return; }
+	done
+	return 1
+}
+
+# killOne FOLDER: sends SIGKILL to the nook of a running job. The job must not be finished.
 killOne()
 {
-	waitsFor 60 eval "pgrep -f -- '--cache .*$1/cache .*--share'" || problem "found no job that runs in $1"
-	found=$(pgrep -f -- "--cache .*$1/cache .*--share" | head -n 1)
-	[ -n "$found" ] && kill -s KILL "$found" 2>/dev/null || return 1
+	waitsFor 60 runningJob "$1" || problem "found no job that runs in $1"
+	found=$(runningJob "$1") && kill -s KILL "$found" 2>/dev/null || return 1
 	echo "killed a share of $1"
 }
 

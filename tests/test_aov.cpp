@@ -171,7 +171,7 @@ std::vector<float> linearReference(const SmallView& view, double radius_m)
 TEST_CASE("aov: a floor beside a wall is half covered, less the share of the reach that it is away", "[aov]")
 {
 	const VolumeSet set = wall(1, 1);
-	const VolumeEvaluator evaluator(set, {});
+	const VolumeEvaluator evaluator(set, {}, true);
 	for (const double distance : {0.001, 0.1, 0.5, 0.9})
 	{
 		CHECK(evaluator.occlusion({distance, 0, 0}, {0, 1, 0}) == Approx(0.5 * (1.0 - distance)).epsilon(0.025));
@@ -186,7 +186,7 @@ TEST_CASE("aov: at a crease, a hair behind a wall's plane is as a hair before it
 {
 	VolumeSet set;
 	add(set, {{0, 0, 1}, {0, 0, -1}, {0, 1, -1}, {0, 1, 1}}); // faces +x
-	const VolumeEvaluator evaluator(set, {});
+	const VolumeEvaluator evaluator(set, {}, true);
 	const double bias_m = kVolumeBias * set.distance_m;
 	const double before = evaluator.occlusion({0.5 * bias_m, 0, 0}, {0, 1, 0});
 	REQUIRE(before > 0.2);
@@ -211,7 +211,7 @@ TEST_CASE("aov: a disk above has the form factor r^2 / (r^2 + h^2)", "[aov]")
 		corners.emplace_back(radius * std::cos(i * kPi / 8.0), 1.0, radius * std::sin(i * kPi / 8.0));
 	}
 	add(set, corners); // faces down
-	const VolumeEvaluator evaluator(set, {});
+	const VolumeEvaluator evaluator(set, {}, true);
 	CHECK(evaluator.occlusion({0, 0, 0}, {0, 1, 0}) / (1.0 - 1.0 / 1000.0) == Approx(0.5).margin(1e-3));
 }
 
@@ -219,7 +219,7 @@ TEST_CASE("aov: two sides darken both, alike", "[aov]")
 {
 	VolumeSet set;
 	add(set, {{-1, 1, -1}, {1, 1, -1}, {1, 1, 1}, {-1, 1, 1}}, true, 0.5F);
-	const VolumeEvaluator evaluator(set, {});
+	const VolumeEvaluator evaluator(set, {}, true);
 	const double under = evaluator.occlusion({0.2, 0.6, 0.1}, {0, 1, 0});
 	CHECK(under > 0.1);
 	CHECK(evaluator.occlusion({0.2, 1.4, 0.1}, {0, -1, 0}) == Approx(under).epsilon(1e-5));
@@ -290,7 +290,7 @@ TEST_CASE("aov-mask: directions share the hemisphere evenly, and thresholds the 
 TEST_CASE("aov-mask: the linear falloff beside a wall, as rays have it", "[aov]")
 {
 	const VolumeSet set = wall(1, 1);
-	const VolumeEvaluator evaluator(set, {});
+	const VolumeEvaluator evaluator(set, {}, true);
 	for (const double distance : {0.01, 0.1, 0.3, 0.5, 0.8})
 	{
 		const double expected = raysNextToWall(distance, 1.0);
@@ -309,7 +309,7 @@ TEST_CASE("aov-mask: polygons cover the directions that cross them, but for a fe
 	for (const double distance_m : {0.1, 0.5, 2.0})
 	{
 		const VolumeSet set = volumesOf(level, distance_m, 8, true);
-		const VolumeEvaluator evaluator(set, {});
+		const VolumeEvaluator evaluator(set, {}, true);
 		for (int sample = 0; sample < 300; ++sample)
 		{
 			const glm::dvec3 corner = set.occluders.corners[random.below(static_cast<uint32_t>(set.occluders.corners.size()))];
@@ -344,9 +344,9 @@ TEST_CASE("aov-mask: a tessellated wall covers the same directions, and two wall
 	const VolumeSet pieces = wall(40, 25, 2.0, 2.0);
 	VolumeSet twice = whole;
 	add(twice, {{-0.05, 0, -2}, {-0.05, 2, -2}, {-0.05, 2, 2}, {-0.05, 0, 2}});
-	const VolumeEvaluator of_whole(whole, {});
-	const VolumeEvaluator of_pieces(pieces, {});
-	const VolumeEvaluator of_twice(twice, {});
+	const VolumeEvaluator of_whole(whole, {}, true);
+	const VolumeEvaluator of_pieces(pieces, {}, true);
+	const VolumeEvaluator of_twice(twice, {}, true);
 	for (int i = 1; i < 30; ++i)
 	{
 		const glm::dvec3 at(0.025 * i, 0.01 * i, 0.3 - 0.02 * i);
@@ -368,7 +368,7 @@ TEST_CASE("aov-mask: leaves in front of leaves cover more than one leaf does", "
 		add(set, {{-9, y, -9}, {9, y, -9}, {9, y, 9}, {-9, y, 9}}, true, 0.25F);
 	}
 	const double one_layer = 0.25 * 0.97;
-	const VolumeEvaluator evaluator(set, {});
+	const VolumeEvaluator evaluator(set, {}, true);
 	const double covered = 1.0 - evaluator.mask({0, 0, 0}, {0, 1, 0}, 256).visibility;
 	CHECK(covered > 3.0 * one_layer);
 	CHECK(covered == Approx(0.97 * (1.0 - std::pow(0.75, 12))).margin(0.06));

@@ -349,7 +349,7 @@ TEST_CASE("trim: a receiver beyond the reach gets nothing, one within gets what 
 		const VolumeSet whole = squareOf(1.0F, 1.0F, two_sided);
 		const VolumeSet cut = squareOf(0.375F, 0.1875F, two_sided); // 0.75 m up, half as far sideways
 		const VolumeEvaluator of_whole(whole, {});
-		const VolumeEvaluator of_cut(cut, {});
+		const VolumeEvaluator of_cut(cut, {}, true);
 		std::vector<VolumeShare> shares;
 		for (int i = 0; i < 20000; ++i)
 		{

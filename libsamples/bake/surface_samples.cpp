@@ -12,6 +12,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace nook
@@ -102,45 +103,168 @@ void findBuried(const Tracer& tracer, const Level& level, std::span<SurfaceSampl
 			 withoutProgress(run));
 }
 
-// Makes the samples' values differences to `base`. Hardly anybody sees samples inside matter, so some of them do without an
-// evaluation: they take the mean of the open samples around their corners, or become black where no ray leaves.
-template <class PointAt>
-void takeFromBase(const Level& level, std::span<SurfaceSample> samples, const PointAt& pointAt, const BakeSettings& settings)
+// Values of `base` at samples, coarse to fine: cells of a grid are halved until the values of a few of their samples agree, which
+// the others take. Samples that face another way have cells of their own, and so do those inside matter, where hardly anybody sees
+// them: these are not halved.
+class BaseAtSamples
 {
-	const std::vector<std::size_t> open = indicesWhere(samples.size(), [&](std::size_t i) { return !samples[i].buried; });
-	const std::vector<double> base = settings.base(mapped(open, pointAt));
-	std::vector<std::array<glm::dvec2, 2>> sums(level.positions.size()); // by side of each vertex: of the base, and number
-	const auto cornerOf = [&](std::size_t i, int k) -> glm::dvec2&
+public:
+	BaseAtSamples(const Level& level, std::span<const SurfaceSample> samples, double radius_m)
+		: m_samples(samples), m_positions(mapped(samples,
+												 [&](const SurfaceSample& of) {
+													 return interpolated(level.positions, level.triangles[of.triangle],
+																		 static_cast<double>(of.b), static_cast<double>(of.c));
+												 })),
+		  m_values(samples.size()), m_known(samples.size()), m_order(samples.size()), m_keys(samples.size())
 	{
-		return sums[level.triangles[samples[i].triangle][k]][samples[i].back ? 1 : 0];
-	};
-	for (std::size_t i = 0; i < open.size(); ++i)
-	{
-		samples[open[i]].visibility -= static_cast<float>(base[i]);
-		for (int k = 0; k < 3; ++k)
+		glm::dvec3 least(std::numeric_limits<double>::infinity());
+		glm::dvec3 most = -least;
+		for (const glm::dvec3& position : m_positions)
 		{
-			cornerOf(open[i], k) += glm::dvec2(base[i], 1.0);
+			least = glm::min(least, position);
+			most = glm::max(most, position);
 		}
-	}
-	std::vector<std::size_t> alone;
-	for (std::size_t i = 0; i < samples.size(); ++i)
-	{
-		if (samples[i].buried)
+		const glm::dvec3 size = most - least;
+		m_coarsest_m = kCoarsest * radius_m;
+		m_finest_m = std::max(m_coarsest_m / (1U << kHalvings), std::max({size.x, size.y, size.z}) / ((1U << kBits) - 1U));
+		for (std::size_t i = 0; i < samples.size(); ++i)
 		{
-			const glm::dvec2 sum = cornerOf(i, 0) + cornerOf(i, 1) + cornerOf(i, 2);
-			samples[i].visibility -= static_cast<float>(sum.y > 0.0 ? sum.x / sum.y : samples[i].shut ? 1.0 : 0.0);
-			if (!(sum.y > 0.0 || samples[i].shut))
+			const glm::dvec3 normal = (samples[i].back ? -1.0 : 1.0) * geometricNormal(level, samples[i].triangle);
+			const glm::uvec3 cell((m_positions[i] - least) / m_finest_m);
+			uint64_t key = samples[i].buried ? 1 : 0;
+			for (int axis = 0; axis < 3; ++axis)
 			{
-				alone.push_back(i);
+				key = 3 * key + (normal[axis] > kDiagonal ? 2U : normal[axis] < -kDiagonal ? 0U : 1U);
+			}
+			for (int bit = kBits - 1; bit >= 0; --bit)
+			{
+				key = 8 * key + 4 * (cell.x >> bit & 1U) + 2 * (cell.y >> bit & 1U) + (cell.z >> bit & 1U);
+			}
+			m_keys[i] = key;
+		}
+		std::iota(m_order.begin(), m_order.end(), uint32_t{0});
+		std::sort(m_order.begin(), m_order.end(),
+				  [this](uint32_t a, uint32_t b) { return std::pair(m_keys[a], a) < std::pair(m_keys[b], b); });
+	}
+
+	// `valuesOf` evaluates samples of these numbers.
+	template <class ValuesOf> std::vector<double> values(const ValuesOf& valuesOf)
+	{
+		std::vector<uint32_t> asked;
+		const auto evaluate = [&]
+		{
+			const std::vector<double> found = valuesOf(std::span<const uint32_t>(asked));
+			for (std::size_t i = 0; i < asked.size(); ++i)
+			{
+				m_values[asked[i]] = found[i];
+			}
+			asked.clear();
+		};
+		const auto ask = [&](uint32_t i)
+		{
+			if (!m_known[i])
+			{
+				m_known[i] = true;
+				asked.push_back(i);
+			}
+		};
+		std::vector<Cell> cells{{m_order.data(), m_order.data() + m_order.size()}};
+		for (int halvings = 0; halvings <= kHalvings; ++halvings)
+		{
+			cells = parted(cells, 3 * (kHalvings - halvings));
+			if (m_finest_m * (1U << (kHalvings - halvings)) > 1.001 * m_coarsest_m)
+			{
+				continue;
+			}
+			for (const Cell& cell : cells)
+			{
+				ask(cell[cell.size() / 2]);
+				if (!m_samples[cell.front()].buried)
+				{
+					ask(cell.front());
+					ask(cell.back());
+				}
+			}
+			evaluate();
+			std::erase_if(cells, [&](const Cell& cell) { return settle(cell); });
+		}
+		std::for_each(m_order.begin(), m_order.end(), ask);
+		evaluate();
+		return m_values;
+	}
+
+private:
+	using Cell = std::span<const uint32_t>;
+
+	static constexpr double kCoarsest = 0.4; // of the radius
+	static constexpr int kHalvings = 4;
+	static constexpr int kBits = 19;
+	static constexpr double kDiagonal = 0.55; // component of a normal
+	static constexpr double kAgree = 0.06;
+	static constexpr double kRaysAgree = 0.2;
+
+	std::vector<Cell> parted(const std::vector<Cell>& cells, int shift) const
+	{
+		std::vector<Cell> parts;
+		for (const Cell& cell : cells)
+		{
+			for (std::size_t first = 0, i = 1; i <= cell.size(); ++i)
+			{
+				if (i == cell.size() || m_keys[cell[i]] >> shift != m_keys[cell[first]] >> shift)
+				{
+					parts.push_back(cell.subspan(first, i - first));
+					first = i;
+				}
 			}
 		}
+		return parts;
 	}
-	const std::vector<double> rest = settings.base(mapped(alone, pointAt));
-	for (std::size_t i = 0; i < alone.size(); ++i)
+
+	// Gives the cell's other samples the mean of those that are known, weighted by the inverse squared distance, unless these
+	// disagree.
+	bool settle(const Cell& cell)
 	{
-		samples[alone[i]].visibility -= static_cast<float>(rest[i]);
+		std::vector<uint32_t> known;
+		std::copy_if(cell.begin(), cell.end(), std::back_inserter(known), [this](uint32_t i) { return m_known[i]; });
+		const auto byValue = [this](uint32_t a, uint32_t b)
+		{
+			return m_values[a] < m_values[b];
+		};
+		const auto [least, most] = std::minmax_element(known.begin(), known.end(), byValue);
+		const bool is_buried = m_samples[cell.front()].buried;
+		if (!is_buried && m_values[*most] - m_values[*least] > kAgree)
+		{
+			return false;
+		}
+		std::vector<uint32_t> taken;
+		for (const uint32_t i : cell)
+		{
+			glm::dvec3 sum(0.0); // of weights, values and visibility by rays
+			for (const uint32_t other : known)
+			{
+				const glm::dvec3 way = m_positions[i] - m_positions[other];
+				const double weight = 1.0 / (glm::dot(way, way) + 1e-4 * m_finest_m * m_finest_m);
+				sum += weight * glm::dvec3(1.0, m_values[other], m_samples[other].visibility);
+			}
+			if (!m_known[i] && (is_buried || std::fabs(m_samples[i].visibility - sum.z / sum.x) <= kRaysAgree))
+			{
+				m_values[i] = sum.y / sum.x;
+				taken.push_back(i);
+			}
+		}
+		std::for_each(taken.begin(), taken.end(), [this](uint32_t i) { m_known[i] = true; });
+		return true;
 	}
-}
+
+	std::span<const SurfaceSample> m_samples;
+	std::vector<glm::dvec3> m_positions;
+	std::vector<double> m_values;
+	std::vector<bool> m_known;
+	std::vector<uint32_t> m_order; // by key
+	std::vector<uint64_t> m_keys;  // what a sample faces, and its cell
+	double m_coarsest_m = 0.0;
+	double m_finest_m = 0.0;
+};
 
 } // namespace
 
@@ -304,7 +428,13 @@ void traceSamples(const Tracer& tracer, const Level& level, std::size_t count, c
 		parallelFor(isShare(run) ? 0 : block.size(), run.threads, take); // nobody reads them in a share
 		if (settings.base && !isShare(run))
 		{
-			takeFromBase(level, block, pointAt, settings);
+			const std::vector<double> base =
+				BaseAtSamples(level, block, settings.radius_m)
+					.values([&](std::span<const uint32_t> of) { return settings.base(mapped(of, pointAt)); });
+			for (std::size_t i = 0; i < block.size(); ++i)
+			{
+				block[i].visibility -= static_cast<float>(base[i]);
+			}
 		}
 		progress.finish(block.size());
 	}

@@ -169,7 +169,7 @@ AovShaded aovOnCpu(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSe
 {
 	const int every_px = settings.every_px;
 	assert(every_px == 1 || every_px == 3 || every_px == 5);
-	const VolumeEvaluator evaluator(volumes, run);
+	const VolumeEvaluator evaluator(volumes, run, settings.mask);
 	PicturePlane cells;
 	cells.width = (gbuffer.width_px + every_px - 1) / every_px;
 	cells.height = (gbuffer.height_px + every_px - 1) / every_px;

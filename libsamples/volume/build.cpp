@@ -347,7 +347,7 @@ public:
 private:
 	double maskRmse(const VolumeSet& set) const
 	{
-		const VolumeEvaluator evaluator(set, m_run);
+		const VolumeEvaluator evaluator(set, m_run, true);
 		std::vector<double> squares(m_points.size());
 		parallelFor(m_points.size(), m_run.threads,
 					[&](std::size_t i)

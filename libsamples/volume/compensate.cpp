@@ -27,6 +27,16 @@ double Compensation::at(double sum) const
 	return occlusion[knot] + share * (occlusion[knot + 1] - occlusion[knot]);
 }
 
+double Compensation::enough() const
+{
+	std::size_t knot = occlusion.size() - 1;
+	while (knot > 0 && occlusion[knot - 1] == occlusion.back())
+	{
+		--knot;
+	}
+	return range * static_cast<double>(knot) / static_cast<double>(occlusion.size() - 1);
+}
+
 std::array<double, 33> Compensation::paper()
 {
 	std::array<double, 33> curve{};

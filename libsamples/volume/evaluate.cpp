@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tree of the volumes' bounding boxes (Embree 3) finds candidates; kernels evaluate them in polygon order, so that the result
-// does not depend on the tree's layout.
+// A tree of bounding boxes finds candidates, four polygons at a time.
 #include "volume/evaluate.h"
 
 #include "core/error.h"
@@ -9,7 +8,6 @@
 #include "core/round.h"
 #include "methods/aov_text.h"
 #include "methods/volume_kernels.h"
-#include "scene/embree.h"
 #include "volume/receivers.h"
 #include "volume/volume_glb.h"
 #include "volume/volumes.h"
@@ -19,7 +17,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -30,7 +27,7 @@ namespace nook
 namespace
 {
 
-// Four receivers or four edges at once, in vector types of GCC and Clang.
+// Four polygons or four edges at once, in vector types of GCC and Clang.
 using Floats = float __attribute__((vector_size(16)));
 using Ints = int32_t __attribute__((vector_size(16)));
 using Doubles = double __attribute__((vector_size(32)));
@@ -109,25 +106,64 @@ Vectors chosen(const Ints& which, const Vectors& a, const Vectors& b)
 
 constexpr std::size_t kMostFours = kMaxOccluderCorners / 4;
 
-// Four corners of a polygon, and for each the unit vector in its plane that points into it from the edge to the next corner.
-// The first corner follows the last one, as often as it takes to fill the four; such edges have no length and the vector 0.
-struct Four
+// Points relative to the centre of all corners, to 48 bits.
+struct Points
 {
-	std::array<Doubles, 3> corners; // by axis
-	Vectors inward;
+	Vectors high;
+	Vectors low;
 };
 
-// A polygon seen from afar: a point with an area.
-struct Spot
+void setLane(Points& points, std::size_t lane, glm::dvec3 point)
 {
-	glm::vec3 centre{0.0F}; // of the area, relative to the first corner
-	float area = 0.0F;      // over π
-	float far = 0.0F;       // squared distance from which it does
+	const glm::vec3 high(point);
+	setLane(points.high, lane, high);
+	setLane(points.low, lane, glm::vec3(point - glm::dvec3(high)));
+}
+
+Vectors operator-(const Points& a, const Points& b)
+{
+	return {(a.high.x - b.high.x) + (a.low.x - b.low.x), (a.high.y - b.high.y) + (a.low.y - b.low.y),
+			(a.high.z - b.high.z) + (a.low.z - b.low.z)};
+}
+
+// An edge of each of four polygons. Those that a polygon lacks have the vector 0.
+struct Edges
+{
+	Vectors inward; // unit, in the polygon's plane
+	Floats offset;  // along it, of the edge from the first corner
+};
+
+// Four polygons near one another; unused lanes have no reach. From afar, a polygon is a point with an area.
+struct Pack
+{
+	std::array<uint32_t, 4> polygons{};
+	std::size_t first_edge = 0;
+	std::size_t edges = 0;
+	Points first{}; // corner
+	Vectors front{};
+	Vectors middle{}; // of the area, relative to the first corner
+	Floats area{};    // over π
+	Floats far{};     // squared distance from which a polygon is a point
+	Floats alpha{};
+	Floats reach{};      // m
+	Floats least_side{}; // 1 − side reach
+	Ints two_sided{};    // −1: it is
+	Ints clamped{};      // −1: by AOV's 2δ, so some points with a falloff > 0 lie outside
 };
 
 // From this many radii on, the integrand of the form factor is flat enough: it varies by the square, and a triangle's corners are
 // twice as far from its centre as the root mean square of its points.
 constexpr double kFar = 7.0;
+
+constexpr std::size_t kAtOnce = 16; // receivers, a multiple of 4
+
+struct Receiver
+{
+	glm::dvec3 at;
+	Points position; // in all lanes
+	Vectors normal;
+	float bias;
+};
 
 // A polygon whose volume contains the receiver, for masks.
 struct Held
@@ -140,23 +176,40 @@ struct Held
 	std::array<Vectors, kMostFours> to;   // the next ones
 };
 
-// Up to four receivers close to one another; the last one fills unused lanes.
-struct Group
+// The bounds of four packs' volumes, or of four nodes of the level below; unused ones are empty.
+struct Node
 {
-	std::size_t count = 0;
-	glm::dvec3 origin{0.0};
-	Vectors at; // relative to the origin
-	Vectors normals;
-	Floats bias;
-	float radius = 0.0F; // from the origin, with the bias
+	Vectors low;
+	Vectors high;
 };
 
-// The values of a polygon at the receivers of a group.
+// A box.
+struct Near
+{
+	Vectors low;
+	Vectors high;
+
+	Near(glm::vec3 least, glm::vec3 most) : low(allOf(least)), high(allOf(most)) {}
+
+	Ints meets(const Node& node) const
+	{
+		return (low.x <= node.high.x) & (low.y <= node.high.y) & (low.z <= node.high.z) & (high.x >= node.low.x) &
+			   (high.y >= node.low.y) & (high.z >= node.low.z);
+	}
+};
+
+const Node kEmptyNode{allOf(glm::vec3(std::numeric_limits<float>::infinity())),
+					  allOf(glm::vec3(-std::numeric_limits<float>::infinity()))};
+
+// The values of four polygons at a receiver.
 struct Terms
 {
-	Ints held; // −1: its volume contains the receiver
+	Ints held;     // −1: the volume contains the receiver
+	Vectors first; // corner, relative to the receiver, which may be lifted
+	Floats lift;   // m
 	Floats height;
-	Floats outside; // beyond its edges, ≥ 0
+	Floats outside; // beyond the polygon's edges, ≥ 0
+	Floats falloff; // g
 	Floats share;   // g · form factor
 };
 
@@ -167,95 +220,31 @@ struct VolumeEvaluator::Data
 	const VolumeSet& set;
 	glm::dvec3 centre{0.0};
 	float grown = 0.0F; // margin in metres, beyond rounding to 32 bits
-	std::vector<glm::vec3> fronts;
-	std::vector<Four> fours;
-	std::vector<Spot> spots;
+	std::vector<Pack> packs;
+	std::vector<Edges> edges;    // by pack
+	std::vector<Points> corners; // parallel to the edges; those that a polygon lacks are its first
+	std::vector<Points> fours;   // for masks, by polygon: corners, the first one again as often as it takes to fill the last four
 	std::vector<uint32_t> first_four; // by polygon, and the end
 	std::vector<glm::dvec3>
-		rings;                    // extended outlines of the volumes in their planes, parallel to the corners; for clamped polygons
-	std::vector<uint8_t> clamped; // clamped by AOV's 2δ: some points with a falloff > 0 lie outside
-	std::vector<RTCBounds> boxes;
-	RTCDevice device = nullptr;
-	RTCScene scene = nullptr;
-	uint64_t number; // no other evaluator's
+		rings; // extended outlines of the volumes in their planes, parallel to the corners; for clamped polygons
+	std::vector<std::vector<Node>> tree; // by level; the last one has the root
 
-	explicit Data(const VolumeSet& of) : set(of)
-	{
-		static std::atomic<uint64_t> count{0};
-		number = ++count;
-	}
-	Data(const Data&) = delete;
-	Data& operator=(const Data&) = delete;
-	~Data()
-	{
-		rtcReleaseScene(scene);
-		rtcReleaseDevice(device);
-	}
+	explicit Data(const VolumeSet& of) : set(of) {}
 
 	void place();
-	void shape(std::size_t polygon);
+	void gather();
+	void shape(Pack& pack, std::size_t lane, Bounds& box);
+	void addFours(std::size_t polygon);
 	void build(const RunSettings& run);
-	bool holds(const Occluder& polygon, glm::dvec3 front, glm::dvec3 position) const;
-	const std::vector<uint32_t>& candidatesAt(glm::vec3 at, float radius) const;
-	float biasOf(double bias_m) const;
-	Group groupOf(std::span<const VolumeReceiver> receivers) const;
-	bool reach(Held& held, glm::dvec3 position, glm::vec3 normal, float bias) const;
-	bool termsOf(uint32_t index, const Group& group, bool roughly, Terms& terms) const;
-	template <class Use> void visitShares(std::span<const VolumeReceiver> receivers, bool roughly, const Use& use) const;
+	Node shape(std::size_t first_pack);
+	const std::vector<uint32_t>& packsAt(const Near& near) const;
+	bool holds(uint32_t polygon, glm::dvec3 front, glm::dvec3 position) const;
+	Receiver receiverOf(const VolumeReceiver& receiver) const;
+	void outline(Held& held, float lift, const Receiver& receiver) const;
+	bool contains(const Pack& pack, const Receiver& receiver, Terms& terms) const;
+	void share(const Pack& pack, const Receiver& receiver, bool roughly, Terms& terms) const;
+	template <class Use> void visitTerms(std::span<const VolumeReceiver> receivers, bool roughly, const Use& use) const;
 };
-
-namespace
-{
-
-// A cube around a point, as a box of Embree.
-struct Near
-{
-	Floats low;
-	Floats high;
-
-	Near(glm::vec3 at, float radius)
-		: low{at.x - radius, at.y - radius, at.z - radius, 0.0F}, high{at.x + radius, at.y + radius, at.z + radius, 0.0F}
-	{
-	}
-
-	bool meets(const RTCBounds& box) const
-	{
-		const auto sides = bitsAs<std::array<Floats, 2>>(box);
-		return !anyOf((high < sides[0]) | (low > sides[1]));
-	}
-};
-
-// Volumes near the last point of a thread, ascending. The next pixel is usually near it.
-struct Candidates
-{
-	uint64_t evaluator = 0;
-	const std::vector<RTCBounds>* boxes = nullptr;
-	glm::vec3 at{0.0F};
-	float radius = -1.0F;
-	std::vector<uint32_t> found;
-};
-
-// A leaf of the tree has several boxes, not all of which contain the point.
-bool collect(RTCPointQueryFunctionArguments* arguments)
-{
-	Candidates& candidates = *static_cast<Candidates*>(arguments->userPtr);
-	if (Near(candidates.at, candidates.radius).meets((*candidates.boxes)[arguments->primID]))
-	{
-		candidates.found.push_back(arguments->primID);
-	}
-	return false;
-}
-
-void boundsOfBox(const RTCBoundsFunctionArguments* arguments)
-{
-	*arguments->bounds_o = (*static_cast<const std::vector<RTCBounds>*>(arguments->geometryUserPtr))[arguments->primID];
-}
-
-// Never called by queries, but Embree requires an intersection function.
-void noHit(const RTCIntersectFunctionNArguments*) {}
-void noOcclusion(const RTCOccludedFunctionNArguments*) {}
-
-} // namespace
 
 // The centre of all corners, and the rounding error of coordinates relative to it.
 void VolumeEvaluator::Data::place()
@@ -267,102 +256,194 @@ void VolumeEvaluator::Data::place()
 	grown = static_cast<float>(16.0 * kUnitRoundoff * (std::max({half.x, half.y, half.z}) + 64.0 * set.distance_m));
 }
 
-void VolumeEvaluator::Data::shape(std::size_t index)
+// Packs of neighbours, without their shapes.
+void VolumeEvaluator::Data::gather()
 {
-	const Occluder& polygon = set.occluders.polygons[index];
-	const std::span<const glm::dvec3> corners = set.occluders.cornersOf(polygon);
-	const glm::dvec3 front = frontOf(corners);
+	const std::vector<Occluder>& polygons = set.occluders.polygons;
+	std::vector<uint32_t> order = nearOrder(
+		mapped(polygons, [this](const Occluder& of) { return glm::vec3(set.occluders.corners[of.first_corner] - centre); }));
+	const std::vector<int> facing = mapped(polygons,
+										   [this](const Occluder& of)
+										   {
+											   const glm::dvec3 front = frontOf(set.occluders.cornersOf(of));
+											   const glm::dvec3 size = glm::abs(front);
+											   const int axis = size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
+											   return front[axis] < 0.0 ? axis + 3 : axis;
+										   });
+	std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return facing[a] < facing[b]; });
+	packs.resize((order.size() + 3) / 4);
+	std::size_t count = 0;
+	for (std::size_t i = 0; i < packs.size(); ++i)
+	{
+		packs[i].first_edge = count;
+		for (std::size_t lane = 0; lane < 4; ++lane)
+		{
+			const uint32_t polygon = order[std::min(4 * i + lane, order.size() - 1)];
+			packs[i].polygons[lane] = polygon;
+			packs[i].edges = std::max<std::size_t>(packs[i].edges, polygons[polygon].corner_count);
+			packs[i].reach[lane] =
+				4 * i + lane < order.size() ? static_cast<float>(set.distance_m) * polygons[polygon].reach : 0.0F;
+		}
+		count += packs[i].edges;
+	}
+	edges.resize(count);
+	corners.resize(count);
+}
+
+// Adds the volume's bounds.
+void VolumeEvaluator::Data::shape(Pack& pack, std::size_t lane, Bounds& box)
+{
+	const Occluder& polygon = set.occluders.polygons[pack.polygons[lane]];
+	const std::span<const glm::dvec3> outline = set.occluders.cornersOf(polygon);
+	const glm::dvec3 front = frontOf(outline);
 	std::array<glm::dvec3, 2 * kMaxOccluderCorners> points;
-	const std::span<glm::dvec3> used(points.data(), 2 * corners.size());
+	const std::span<glm::dvec3> used(points.data(), 2 * outline.size());
 	const VolumeShape shape = shapeOf(set, polygon);
-	prismOf(corners, front, shape, used);
-	fronts[index] = glm::vec3(front);
-	const Bounds box = boundsAround(used);
-	for (std::size_t i = 0; i < corners.size(); ++i)
+	prismOf(outline, front, shape, used);
+	const Bounds own = boundsAround(used);
+	box = lane == 0 ? own : Bounds{glm::min(box.least, own.least), glm::max(box.most, own.most)};
+	glm::dvec3 middle(0.0);
+	double area = 0.0;
+	for (std::size_t i = 0; i < outline.size(); ++i)
 	{
 		// Component within the plane; clamped corners (eq. 13's 2δ) end exactly there.
-		const glm::dvec3 moved = used[i] - corners[i];
+		const glm::dvec3 moved = used[i] - outline[i];
 		const double across = glm::length(moved - glm::dot(moved, front) * front);
-		clamped[index] |= !set.exact_bounds && across > (2.0 - 1e-9) * shape.distance_m * shape.side_share ? 1 : 0;
+		pack.clamped[lane] |= !set.exact_bounds && across > (2.0 - 1e-9) * shape.distance_m * shape.side_share ? -1 : 0;
 		rings[polygon.first_corner + i] = used[i];
-	}
-	glm::dvec3 mean(0.0);
-	double area = 0.0;
-	for (std::size_t i = 2; i < corners.size(); ++i)
-	{
-		const double part = 0.5 * glm::length(glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]));
-		mean += part / 3.0 * (corners[i - 1] - corners[0] + corners[i] - corners[0]);
+		const glm::dvec3 next = outline[(i + 1) % outline.size()];
+		const glm::dvec3 inward = glm::normalize(glm::cross(front, next - outline[i]));
+		setLane(edges[pack.first_edge + i].inward, lane, glm::vec3(inward));
+		edges[pack.first_edge + i].offset[lane] = static_cast<float>(glm::dot(outline[i] - outline[0], inward));
+		const double part = 0.5 * glm::length(glm::cross(outline[i] - outline[0], next - outline[0]));
+		middle += part / 3.0 * (outline[i] - outline[0] + next - outline[0]);
 		area += part;
 	}
-	mean = area > 0.0 ? mean / area : mean;
+	middle = area > 0.0 ? middle / area : middle;
 	double far = 0.0;
-	for (const glm::dvec3& corner : corners)
+	for (const glm::dvec3& corner : outline)
 	{
-		far = std::max(far, kFar * kFar * glm::dot(corner - corners[0] - mean, corner - corners[0] - mean));
+		far = std::max(far, kFar * kFar * glm::dot(corner - outline[0] - middle, corner - outline[0] - middle));
 	}
-	spots[index] = {glm::vec3(mean), static_cast<float>(area / kPi), static_cast<float>(far)};
+	for (std::size_t i = 0; i < pack.edges; ++i)
+	{
+		setLane(corners[pack.first_edge + i], lane, outline[i < outline.size() ? i : 0] - centre);
+	}
+	setLane(pack.first, lane, outline[0] - centre);
+	setLane(pack.front, lane, glm::vec3(front));
+	setLane(pack.middle, lane, glm::vec3(middle));
+	pack.area[lane] = static_cast<float>(area / kPi);
+	pack.far[lane] = static_cast<float>(far);
+	pack.alpha[lane] = polygon.alpha;
+	pack.least_side[lane] = 1.0F - polygon.side_reach;
+	pack.two_sided[lane] = polygon.two_sided ? -1 : 0;
+}
+
+// Shapes four packs.
+Node VolumeEvaluator::Data::shape(std::size_t first_pack)
+{
+	Node node = kEmptyNode;
+	for (std::size_t i = 0; i < 4 && first_pack + i < packs.size(); ++i)
+	{
+		Bounds box;
+		for (std::size_t lane = 0; lane < 4; ++lane)
+		{
+			shape(packs[first_pack + i], lane, box);
+		}
+		setLane(node.low, i, glm::vec3(box.least - centre) - grown);
+		setLane(node.high, i, glm::vec3(box.most - centre) + grown);
+	}
+	return node;
+}
+
+void VolumeEvaluator::Data::addFours(std::size_t index)
+{
+	const std::span<const glm::dvec3> outline = set.occluders.cornersOf(set.occluders.polygons[index]);
 	for (std::size_t i = 0; i < 4 * (first_four[index + 1] - first_four[index]); ++i)
 	{
-		Four& four = fours[first_four[index] + i / 4];
-		const glm::dvec3 from = corners[i < corners.size() ? i : 0];
-		const glm::dvec3 to = corners[i + 1 < corners.size() ? i + 1 : 0];
-		const glm::vec3 inward = from == to ? glm::vec3(0.0F) : glm::vec3(glm::normalize(glm::cross(front, to - from)));
-		for (int axis = 0; axis < 3; ++axis)
-		{
-			four.corners[static_cast<std::size_t>(axis)][i % 4] = from[axis];
-		}
-		setLane(four.inward, i % 4, inward);
+		setLane(fours[first_four[index] + i / 4], i % 4, outline[i < outline.size() ? i : 0] - centre);
 	}
-	const glm::vec3 low = glm::vec3(box.least - centre) - grown;
-	const glm::vec3 high = glm::vec3(box.most - centre) + grown;
-	boxes[index] = {low.x, low.y, low.z, 0.0F, high.x, high.y, high.z, 0.0F};
 }
 
 void VolumeEvaluator::Data::build(const RunSettings& run)
 {
-	device = newEmbreeDevice();
-	scene = rtcNewScene(device);
-	RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-	rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(boxes.size()));
-	rtcSetGeometryUserData(geometry, &boxes);
-	rtcSetGeometryBoundsFunction(geometry, boundsOfBox, nullptr);
-	rtcSetGeometryIntersectFunction(geometry, noHit);
-	rtcSetGeometryOccludedFunction(geometry, noOcclusion);
-	rtcCommitGeometry(geometry);
-	rtcAttachGeometryByID(scene, geometry, 0);
-	rtcReleaseGeometry(geometry);
-	onThreads(run.threads, [this] { rtcCommitScene(scene); });
-	refuseIf(rtcGetDeviceError(device) != RTC_ERROR_NONE,
-			 "volumes: found no memory left for a tree of " + std::to_string(boxes.size()) + " volumes, expected more",
-			 ExitCode::runtime);
+	gather();
+	rings.resize(set.occluders.corners.size());
+	tree.emplace_back((packs.size() + 3) / 4);
+	inBlocks(tree[0].size(), 64, run, nullptr, [this](std::size_t i) { tree[0][i] = shape(4 * i); });
+	while (tree.back().size() > 1)
+	{
+		std::vector<Node> above((tree.back().size() + 3) / 4, kEmptyNode);
+		for (std::size_t i = 0; i < tree.back().size(); ++i)
+		{
+			const Node& node = tree.back()[i];
+			glm::vec3 low = laneOf(node.low, 0);
+			glm::vec3 high = laneOf(node.high, 0);
+			for (std::size_t lane = 1; lane < 4; ++lane)
+			{
+				low = glm::min(low, laneOf(node.low, lane));
+				high = glm::max(high, laneOf(node.high, lane));
+			}
+			setLane(above[i / 4].low, i % 4, low);
+			setLane(above[i / 4].high, i % 4, high);
+		}
+		tree.push_back(std::move(above));
+	}
 }
 
-VolumeEvaluator::VolumeEvaluator(const VolumeSet& volumes, const RunSettings& run) : m_data(std::make_unique<Data>(volumes))
+// Those with volumes near, ascending. Without branches, which would be mispredicted.
+const std::vector<uint32_t>& VolumeEvaluator::Data::packsAt(const Near& near) const
+{
+	thread_local std::vector<uint32_t> found;
+	thread_local std::vector<uint32_t> above;
+	found.assign(tree.empty() ? 0 : 1, 0);
+	for (std::size_t level = tree.size(); level-- > 0;)
+	{
+		above.swap(found);
+		found.resize(4 * above.size());
+		std::size_t count = 0;
+		for (const uint32_t index : above)
+		{
+			const Ints met = near.meets(tree[level][index]);
+			for (uint32_t lane = 0; lane < 4; ++lane)
+			{
+				found[count] = 4 * index + lane;
+				count -= static_cast<std::size_t>(met[lane]);
+			}
+		}
+		found.resize(count);
+	}
+	return found;
+}
+
+VolumeEvaluator::VolumeEvaluator(const VolumeSet& volumes, const RunSettings& run, bool masks)
+	: m_data(std::make_unique<Data>(volumes))
 {
 	assert(run.threads >= 1 && volumes.distance_m > 0.0);
 	Data& data = *m_data;
 	data.place();
-	const std::size_t count = volumes.occluders.polygons.size();
-	data.fronts.resize(count);
-	data.clamped.resize(count);
-	data.boxes.resize(count);
-	data.spots.resize(count);
-	data.rings.resize(volumes.occluders.corners.size());
-	data.first_four.push_back(0);
-	for (const Occluder& polygon : volumes.occluders.polygons)
+	if (!volumes.occluders.polygons.empty())
 	{
-		data.first_four.push_back(data.first_four.back() + (polygon.corner_count + 3) / 4);
+		data.build(run);
 	}
-	data.fours.resize(data.first_four.back());
-	inBlocks(count, 1024, run, nullptr, [&data](std::size_t i) { data.shape(i); });
-	data.build(run);
+	if (masks)
+	{
+		data.first_four.push_back(0);
+		for (const Occluder& polygon : volumes.occluders.polygons)
+		{
+			data.first_four.push_back(data.first_four.back() + (polygon.corner_count + 3) / 4);
+		}
+		data.fours.resize(data.first_four.back());
+		inBlocks(volumes.occluders.polygons.size(), 1024, run, nullptr, [&data](std::size_t i) { data.addFours(i); });
+	}
 }
 
 VolumeEvaluator::~VolumeEvaluator() = default;
 
 // True if a point with a falloff above 0 is inside the clamped outline.
-bool VolumeEvaluator::Data::holds(const Occluder& polygon, glm::dvec3 front, glm::dvec3 position) const
+bool VolumeEvaluator::Data::holds(uint32_t index, glm::dvec3 front, glm::dvec3 position) const
 {
+	const Occluder& polygon = set.occluders.polygons[index];
 	const std::span<const glm::dvec3> ring = std::span(rings).subspan(polygon.first_corner, polygon.corner_count);
 	glm::dvec3 a = ring.back();
 	for (const glm::dvec3& b : ring)
@@ -376,68 +457,32 @@ bool VolumeEvaluator::Data::holds(const Occluder& polygon, glm::dvec3 front, glm
 	return true;
 }
 
-const std::vector<uint32_t>& VolumeEvaluator::Data::candidatesAt(glm::vec3 at, float radius) const
+// Fills in the corners.
+void VolumeEvaluator::Data::outline(Held& held, float lift, const Receiver& receiver) const
 {
-	thread_local Candidates candidates;
-	const glm::vec3 moved = glm::abs(at - candidates.at);
-	if (candidates.evaluator != number || std::max({moved.x, moved.y, moved.z}) + radius > candidates.radius)
-	{
-		// Tuned on builtin:suburb: a smaller radius has more queries, a larger one more candidates.
-		candidates = {number, &boxes, at, radius + 0.15F * static_cast<float>(set.distance_m), std::move(candidates.found)};
-		candidates.found.clear();
-		RTCPointQueryContext context;
-		rtcInitPointQueryContext(&context);
-		RTCPointQuery query{at.x, at.y, at.z, 0.0F, 1.7320509F * candidates.radius};
-		rtcPointQuery(scene, &query, &context, collect, &candidates);
-		std::sort(candidates.found.begin(), candidates.found.end());
-	}
-	return candidates.found;
-}
-
-// Fills `held` for the polygon of its index; returns false if its volume does not contain the point.
-bool VolumeEvaluator::Data::reach(Held& held, glm::dvec3 position, glm::vec3 normal, float bias) const
-{
-	const Occluder& polygon = set.occluders.polygons[held.index];
-	const Four* const shape = &fours[first_four[held.index]];
-	held.front = fronts[held.index];
-	const float two_sided = polygon.two_sided ? 1.0F : 0.0F;
-	volume_kernels::Kernels kernels;
-	glm::vec3 corner(glm::dvec3(shape->corners[0][0], shape->corners[1][0], shape->corners[2][0]) - position);
-	kernels.corners = std::span(&corner, 1);
-	const float lift = kernels.nookLift(kernels.nookHeight(held.front), two_sided, bias, glm::dot(normal, held.front));
-	corner -= lift * held.front;
-	held.height = kernels.nookHeight(held.front);
-	const auto reach = static_cast<float>(set.distance_m);
-	if (!kernels.nookReaches(held.height, two_sided, reach * polygon.reach, bias))
-	{
-		return false;
-	}
-	const float scale = 1.0F / reach;
-	const float least = 1.0F - polygon.side_reach;
-	held.fours = first_four[held.index + 1] - first_four[held.index];
+	const std::span<const Points> shape =
+		std::span(fours).subspan(first_four[held.index], first_four[held.index + 1] - first_four[held.index]);
+	held.fours = shape.size();
 	for (std::size_t i = 0; i < held.fours; ++i)
 	{
-		Vectors& from = held.from[i];
-		from.x = __builtin_convertvector(shape[i].corners[0] - position.x, Floats) - lift * held.front.x;
-		from.y = __builtin_convertvector(shape[i].corners[1] - position.y, Floats) - lift * held.front.y;
-		from.z = __builtin_convertvector(shape[i].corners[2] - position.z, Floats) - lift * held.front.z;
-		const Floats outside = dotOf(from, shape[i].inward); // AOV eq. 7
-		const Floats side = 1.0F - outside * scale;
-		if (anyOf((side <= 0.0F) | (side < least)))
-		{
-			return false;
-		}
+		const Vectors away = shape[i] - receiver.position;
+		held.from[i] = {away.x - lift * held.front.x, away.y - lift * held.front.y, away.z - lift * held.front.z};
 	}
 	for (std::size_t i = 0; i < held.fours; ++i)
 	{
 		held.to[i] = nextOf(held.from[i], held.from[i + 1 < held.fours ? i + 1 : 0]);
 	}
-	return clamped[held.index] == 0 || holds(polygon, glm::dvec3(held.front), position);
 }
 
-float VolumeEvaluator::Data::biasOf(double bias_m) const
+Receiver VolumeEvaluator::Data::receiverOf(const VolumeReceiver& receiver) const
 {
-	return static_cast<float>(std::max({bias_m, kVolumeBias * set.distance_m, set.plane_error_m}));
+	const glm::dvec3 position = receiver.position - centre;
+	const glm::vec3 at(position);
+	const double bias = std::max({receiver.bias_m, kVolumeBias * set.distance_m, set.plane_error_m});
+	return {receiver.position,
+			{allOf(at), allOf(glm::vec3(position - glm::dvec3(at)))},
+			allOf(glm::vec3(receiver.normal)),
+			static_cast<float>(bias)};
 }
 
 namespace
@@ -450,8 +495,8 @@ Floats arcOf(const Floats& x)
 	return 1.57079595F + x * (-0.999943104F + x * (0.783984789F + x * (-0.653083218F + x * p)));
 }
 
-// nookFormFactor() for the receivers among `held`. Edges that appear nearly as long as half a turn take more digits: the kernel
-// itself evaluates such receivers.
+// nookFormFactor() of the polygons among `held`; repeated corners change nothing. Edges that appear nearly as long as half a turn
+// take more digits: the kernel itself evaluates such polygons.
 Floats formFactors(std::span<const Vectors> corners, const Vectors& n, const Floats& side, const Ints& held)
 {
 	const Floats upward = n.z < 0.0F ? Floats{} - 1.0F : Floats{} + 1.0F;
@@ -522,135 +567,141 @@ Floats formFactors(std::span<const Vectors> corners, const Vectors& n, const Flo
 
 } // namespace
 
-// Evaluates a polygon at the receivers, like nookVolume(); returns false if its volume contains none of them.
-bool VolumeEvaluator::Data::termsOf(uint32_t index, const Group& group, bool roughly, Terms& terms) const
+// Returns false if no volume of the pack contains the receiver; else fills in all but the shares.
+bool VolumeEvaluator::Data::contains(const Pack& pack, const Receiver& receiver, Terms& terms) const
 {
-	const Occluder& polygon = set.occluders.polygons[index];
-	const Four* const shape = &fours[first_four[index]];
-	const Vectors front = allOf(fronts[index]);
-	const auto cornerOf = [&](std::size_t i)
-	{
-		const std::array<Doubles, 3>& corners = shape[i / 4].corners;
-		return allOf(glm::dvec3(corners[0][i % 4], corners[1][i % 4], corners[2][i % 4]) - group.origin);
-	};
-	const auto minus = [](const Vectors& a, const Vectors& b)
-	{
-		return Vectors{a.x - b.x, a.y - b.y, a.z - b.z};
-	};
-	const Vectors first = cornerOf(0);
-	Vectors at = group.at;
-	terms.height = -dotOf(front, minus(first, at));
-	const Ints lifted = (magnitudeOf(terms.height) <= group.bias) & (magnitudeOf(dotOf(group.normals, front)) <= 0.7F);
+	const float bias = receiver.bias;
+	terms.first = pack.first - receiver.position;
+	terms.height = -dotOf(pack.front, terms.first);
+	terms.lift = Floats{};
+	const Ints lifted = (magnitudeOf(terms.height) <= bias) & (magnitudeOf(dotOf(receiver.normal, pack.front)) <= 0.7F);
 	if (anyOf(lifted)) // nookLift()
 	{
-		const Floats out =
-			polygon.two_sided ? (terms.height < 0.0F ? -1.01F * group.bias : 1.01F * group.bias) : 1.01F * group.bias;
-		const Vectors lift = front * (lifted ? out - terms.height : Floats{});
-		at = {at.x + lift.x, at.y + lift.y, at.z + lift.z};
-		terms.height = -dotOf(front, minus(first, at));
+		const Floats above = Floats{} + 1.01F * bias;
+		terms.lift = lifted ? (pack.two_sided & (terms.height < 0.0F) ? -above : above) - terms.height : terms.lift;
+		terms.height += terms.lift;
 	}
-	const auto reach = static_cast<float>(set.distance_m);
-	const Floats up = polygon.two_sided ? magnitudeOf(terms.height) : terms.height;
-	terms.held = (up > group.bias) & (up < reach * polygon.reach);
+	const Floats up = pack.two_sided ? magnitudeOf(terms.height) : terms.height;
+	terms.held = (up > bias) & (up < pack.reach);
 	if (!anyOf(terms.held))
 	{
 		return false;
 	}
-	const float scale = 1.0F / reach;
-	const float least = 1.0F - polygon.side_reach;
-	std::array<Vectors, kMaxOccluderCorners> corners;
+	const float scale = 1.0F / static_cast<float>(set.distance_m);
 	terms.outside = Floats{};
-	Floats falloff = polygon.alpha * (1.0F - magnitudeOf(terms.height) * scale);
-	for (std::size_t i = 0; i < polygon.corner_count; ++i)
+	terms.falloff = pack.alpha * (1.0F - magnitudeOf(terms.height) * scale);
+	for (std::size_t i = 0; i < pack.edges; ++i)
 	{
-		corners[i] = minus(cornerOf(i), at);
-		const Floats outside = dotOf(corners[i], allOf(laneOf(shape[i / 4].inward, i % 4))); // AOV eq. 7
+		const Edges& edge = edges[pack.first_edge + i];
+		const Floats outside = edge.offset + dotOf(terms.first, edge.inward); // AOV eq. 7; a lift does not change it
 		const Floats side = 1.0F - outside * scale;
-		terms.held &= (side > 0.0F) & (side >= least);
+		terms.held &= (side > 0.0F) & (side >= pack.least_side);
 		terms.outside = outside > terms.outside ? outside : terms.outside;
-		falloff *= side < 1.0F ? side : Floats{} + 1.0F;
+		terms.falloff *= side < 1.0F ? side : Floats{} + 1.0F;
 	}
-	for (std::size_t lane = 0; clamped[index] != 0 && lane < 4; ++lane)
+	for (std::size_t lane = 0; anyOf(terms.held & pack.clamped) && lane < 4; ++lane)
 	{
-		terms.held[lane] &= holds(polygon, glm::dvec3(fronts[index]), group.origin + glm::dvec3(laneOf(group.at, lane))) ? -1 : 0;
+		const bool is_held =
+			pack.clamped[lane] == 0 || holds(pack.polygons[lane], glm::dvec3(laneOf(pack.front, lane)), receiver.at);
+		terms.held[lane] &= is_held ? -1 : 0;
 	}
-	if (!anyOf(terms.held))
+	return anyOf(terms.held);
+}
+
+// Evaluates polygons like nookVolume().
+void VolumeEvaluator::Data::share(const Pack& pack, const Receiver& receiver, bool roughly, Terms& terms) const
+{
+	const auto lifted = [&](const Vectors& corner)
 	{
-		return false;
-	}
-	const Spot& spot = spots[index];
-	const Vectors way{corners[0].x + spot.centre.x, corners[0].y + spot.centre.y, corners[0].z + spot.centre.z};
+		return Vectors{corner.x - terms.lift * pack.front.x, corner.y - terms.lift * pack.front.y,
+					   corner.z - terms.lift * pack.front.z};
+	};
+	const Vectors way = lifted({terms.first.x + pack.middle.x, terms.first.y + pack.middle.y, terms.first.z + pack.middle.z});
 	const Floats square = dotOf(way, way);
-	if (roughly && !anyOf(terms.held & (square < spot.far)))
+	const Floats rise = dotOf(way, receiver.normal);
+	terms.share = (rise > 0.0F ? rise : Floats{}) * magnitudeOf(terms.height) * (pack.area / (square * square));
+	const Ints near = roughly ? terms.held & (square < pack.far) : terms.held;
+	if (anyOf(near))
 	{
-		const Floats rise = dotOf(way, group.normals);
-		terms.share = falloff * (rise > 0.0F ? rise : Floats{}) * magnitudeOf(terms.height) * (spot.area / (square * square));
-		return true;
-	}
-	const Floats side = terms.height < 0.0F ? Floats{} - 1.0F : Floats{} + 1.0F;
-	terms.share = falloff * formFactors(std::span(corners).first(polygon.corner_count), group.normals, side, terms.held);
-	return true;
-}
-
-Group VolumeEvaluator::Data::groupOf(std::span<const VolumeReceiver> receivers) const
-{
-	Group group;
-	group.count = receivers.size();
-	group.origin = receivers.front().position;
-	for (std::size_t lane = 0; lane < 4; ++lane)
-	{
-		const VolumeReceiver& receiver = receivers[std::min(lane, receivers.size() - 1)];
-		const glm::vec3 at(receiver.position - group.origin);
-		setLane(group.at, lane, at);
-		setLane(group.normals, lane, glm::vec3(receiver.normal));
-		group.bias[lane] = biasOf(receiver.bias_m);
-		group.radius = std::max({group.radius, std::fabs(at.x) + group.bias[lane], std::fabs(at.y) + group.bias[lane],
-								 std::fabs(at.z) + group.bias[lane]});
-	}
-	return group;
-}
-
-// Calls use(receiver number, polygon, terms, lane) for all volumes that contain a receiver, for each receiver in polygon order.
-template <class Use>
-void VolumeEvaluator::Data::visitShares(std::span<const VolumeReceiver> receivers, bool roughly, const Use& use) const
-{
-	constexpr float kWidest = 0.1F; // of δ: receivers farther apart share too few volumes. Tuned on an apartment.
-	for (std::size_t begin = 0, end = 0; begin < receivers.size(); begin = end)
-	{
-		end = std::min(begin + 4, receivers.size());
-		Group group = groupOf(receivers.subspan(begin, end - begin));
-		if (end > begin + 1 && group.radius > kWidest * static_cast<float>(set.distance_m))
+		std::array<Vectors, kMaxOccluderCorners> outlines;
+		for (std::size_t i = 0; i < pack.edges; ++i)
 		{
-			end = begin + 1;
-			group = groupOf(receivers.subspan(begin, 1));
+			outlines[i] = lifted(corners[pack.first_edge + i] - receiver.position);
 		}
-		const glm::vec3 at(group.origin - centre);
-		const float radius = grown + group.radius; // a point that close behind a plane may be lifted into the volume
-		const Near near(at, radius);
-		Terms terms;
-		for (const uint32_t index : candidatesAt(at, radius))
+		const Floats side = terms.height < 0.0F ? Floats{} - 1.0F : Floats{} + 1.0F;
+		const Floats factors = formFactors(std::span(outlines).first(pack.edges), receiver.normal, side, near);
+		terms.share = near ? factors : terms.share;
+	}
+	terms.share *= terms.falloff;
+}
+
+// Calls use(receiver number, pack, terms) for all packs with a volume that contains a receiver, for each of at most kAtOnce
+// receivers in an order that depends on the volumes only, until it returns true. Neighbours share what is read of a pack.
+template <class Use> void VolumeEvaluator::Data::visitTerms(std::span<const VolumeReceiver> of, bool roughly, const Use& use) const
+{
+	std::array<Receiver, kAtOnce> receivers;
+	std::array<Node, kAtOnce / 4> boxes;
+	boxes.fill(kEmptyNode);
+	glm::vec3 least(std::numeric_limits<float>::infinity());
+	glm::vec3 most = -least;
+	for (std::size_t i = 0; i < of.size(); ++i)
+	{
+		receivers[i] = receiverOf(of[i]);
+		const glm::vec3 at = laneOf(receivers[i].position.high, 0);
+		const float radius = grown + receivers[i].bias; // a point that close behind a plane may be lifted into the volume
+		setLane(boxes[i / 4].low, i % 4, at - radius);
+		setLane(boxes[i / 4].high, i % 4, at + radius);
+		least = glm::min(least, at - radius);
+		most = glm::max(most, at + radius);
+	}
+	Terms terms;
+	for (const uint32_t index : packsAt(Near(least, most)))
+	{
+		const Node& node = tree[0][index / 4];
+		const Near box(laneOf(node.low, index % 4), laneOf(node.high, index % 4));
+		for (std::size_t four = 0; 4 * four < of.size(); ++four)
 		{
-			const bool any = near.meets(boxes[index]) && termsOf(index, group, roughly, terms);
-			for (std::size_t lane = 0; any && lane < group.count; ++lane)
+			const Ints met = box.meets(boxes[four]);
+			for (std::size_t lane = 0; lane < 4; ++lane)
 			{
-				if (terms.held[lane] != 0)
+				const std::size_t i = 4 * four + lane;
+				if (met[lane] != 0 && contains(packs[index], receivers[i], terms))
 				{
-					use(begin + lane, index, terms, lane);
+					share(packs[index], receivers[i], roughly, terms);
+					if (use(i, packs[index], terms))
+					{
+						setLane(boxes[four].low, lane, laneOf(kEmptyNode.low, 0));
+					}
 				}
 			}
 		}
 	}
 }
 
-void VolumeEvaluator::sums(std::span<const VolumeReceiver> receivers, std::span<VolumeSum> sums, bool roughly) const
+void VolumeEvaluator::sums(std::span<const VolumeReceiver> receivers, std::span<VolumeSum> sums, bool roughly, double enough) const
 {
-	std::fill(sums.begin(), sums.end(), VolumeSum{});
-	m_data->visitShares(receivers, roughly,
-						[&](std::size_t i, uint32_t, const Terms& terms, std::size_t lane)
-						{
-							sums[i].occlusion += static_cast<double>(terms.share[lane]);
-							sums[i].volumes += 1;
-						});
+	for (std::size_t first = 0; first < receivers.size(); first += kAtOnce)
+	{
+		const std::size_t size = std::min(kAtOnce, receivers.size() - first);
+		std::array<Doubles, kAtOnce> totals{};
+		std::array<Ints, kAtOnce> counts{};
+		const auto totalOf = [&totals](std::size_t i)
+		{
+			return totals[i][0] + totals[i][1] + totals[i][2] + totals[i][3];
+		};
+		m_data->visitTerms(receivers.subspan(first, size), roughly,
+						   [&](std::size_t i, const Pack&, const Terms& terms)
+						   {
+							   totals[i] += __builtin_convertvector(terms.held ? terms.share : Floats{}, Doubles);
+							   counts[i] -= terms.held;
+							   return totalOf(i) >= enough;
+						   });
+		for (std::size_t i = 0; i < size; ++i)
+		{
+			const Ints& count = counts[i];
+			sums[first + i] = {totalOf(i), static_cast<uint32_t>(count[0] + count[1] + count[2] + count[3])};
+		}
+	}
 }
 
 double VolumeEvaluator::occlusion(glm::dvec3 position, glm::dvec3 normal) const
@@ -664,15 +715,22 @@ double VolumeEvaluator::occlusion(glm::dvec3 position, glm::dvec3 normal) const
 void VolumeEvaluator::shares(std::span<const VolumeReceiver> receivers, std::span<std::vector<VolumeShare>> shares) const
 {
 	std::for_each(shares.begin(), shares.end(), [](std::vector<VolumeShare>& of) { of.clear(); });
-	m_data->visitShares(
-		receivers, true,
-		[&](std::size_t i, uint32_t polygon, const Terms& terms, std::size_t lane)
-		{
-			if (terms.share[lane] > 0.0F)
-			{
-				shares[i].push_back({polygon, terms.share[lane], std::fabs(terms.height[lane]), terms.outside[lane]});
-			}
-		});
+	for (std::size_t first = 0; first < receivers.size(); first += kAtOnce)
+	{
+		m_data->visitTerms(receivers.subspan(first, std::min(kAtOnce, receivers.size() - first)), true,
+						   [&](std::size_t i, const Pack& pack, const Terms& terms)
+						   {
+							   for (std::size_t lane = 0; lane < 4; ++lane)
+							   {
+								   if (terms.held[lane] != 0 && terms.share[lane] > 0.0F)
+								   {
+									   shares[first + i].push_back({pack.polygons[lane], terms.share[lane],
+																	std::fabs(terms.height[lane]), terms.outside[lane]});
+								   }
+							   }
+							   return false;
+						   });
+	}
 }
 
 namespace
@@ -787,23 +845,33 @@ private:
 
 VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, int directions, double bias_m) const
 {
+	assert(m_data->packs.empty() || !m_data->fours.empty());
 	const MaskTables& tables = maskTablesOf(directions);
 	MaskBits open;
 	open.fill(glm::uvec4(~0U));
 	const auto reach = static_cast<float>(m_data->set.distance_m);
 	MaskReceiver receiver(glm::vec3(normal), tables, reach);
 	VolumeMask mask;
-	const glm::vec3 at(position - m_data->centre);
-	const float bias = m_data->biasOf(bias_m);
-	const Near near(at, m_data->grown + bias);
+	const Receiver at = m_data->receiverOf({position, normal, bias_m});
+	const glm::vec3 point = laneOf(at.position.high, 0);
+	const float radius = m_data->grown + at.bias;
 	Held held;
-	for (const uint32_t index : m_data->candidatesAt(at, m_data->grown + bias))
+	Terms terms;
+	for (const uint32_t index : m_data->packsAt(Near(point - radius, point + radius)))
 	{
-		held.index = index;
-		if (near.meets(m_data->boxes[index]) && m_data->reach(held, position, glm::vec3(normal), bias))
+		const Pack& pack = m_data->packs[index];
+		const bool any = m_data->contains(pack, at, terms);
+		for (std::size_t lane = 0; any && lane < 4; ++lane)
 		{
-			receiver.cover(held, m_data->set.occluders.polygons[index], open);
-			mask.volumes += 1;
+			if (terms.held[lane] != 0)
+			{
+				held.index = pack.polygons[lane];
+				held.front = laneOf(pack.front, lane);
+				held.height = terms.height[lane];
+				m_data->outline(held, terms.lift[lane], at);
+				receiver.cover(held, m_data->set.occluders.polygons[held.index], open);
+				mask.volumes += 1;
+			}
 		}
 	}
 	int covered = static_cast<int>(tables.rays.size());
@@ -819,7 +887,7 @@ VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, int dir
 VisibilityAtPoints visibilityByVolumes(const std::string& path, int directions, const RunSettings& run)
 {
 	const auto volumes = std::make_shared<const VolumeSet>(readVolumes(path));
-	const auto evaluator = std::make_shared<const VolumeEvaluator>(*volumes, run);
+	const auto evaluator = std::make_shared<const VolumeEvaluator>(*volumes, run, directions > 0);
 	return [volumes, evaluator, directions, threads = run.threads](std::span<const ReferencePoint> points)
 	{
 		std::vector<double> values(points.size());
@@ -830,7 +898,7 @@ VisibilityAtPoints visibilityByVolumes(const std::string& path, int directions, 
 						{ values[i] = evaluator->mask(points[i].position, points[i].normal, directions).visibility; });
 			return values;
 		}
-		values = sumsAt(*evaluator, points, {threads, {}}, true);
+		values = sumsAt(*evaluator, points, {threads, {}}, true, volumes->compensation.enough());
 		std::transform(values.begin(), values.end(), values.begin(),
 					   [&](double sum) { return 1.0 - volumes->compensation.at(sum); });
 		return values;

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -52,21 +53,22 @@ inline constexpr double kVolumeBias = 1e-4;
 class VolumeEvaluator
 {
 public:
-	// Keeps a reference to the set, which must outlive this object.
-	VolumeEvaluator(const VolumeSet& volumes, const RunSettings& run);
+	// Keeps a reference to the set, which must outlive this object. `masks`: mask() will be called.
+	VolumeEvaluator(const VolumeSet& volumes, const RunSettings& run, bool masks = false);
 	~VolumeEvaluator();
 	VolumeEvaluator(const VolumeEvaluator&) = delete;
 	VolumeEvaluator& operator=(const VolumeEvaluator&) = delete;
 
-	// Sums over all volumes of g · form factor (AOV eqs. 4 and 5), neither clamped nor compensated, added in polygon order. Up to
-	// four consecutive receivers that are close to one another are evaluated at once; rounding depends on which ones.
-	// `roughly` takes polygons that are seven radii away as points.
-	void sums(std::span<const VolumeReceiver> receivers, std::span<VolumeSum> sums, bool roughly = false) const;
+	// Sums over all volumes of g · form factor (AOV eqs. 4 and 5), neither clamped nor compensated. `roughly` takes polygons that
+	// are seven radii away as points. Sums that have reached `enough` may be left there. Receivers in a row are best close to one
+	// another.
+	void sums(std::span<const VolumeReceiver> receivers, std::span<VolumeSum> sums, bool roughly = false,
+			  double enough = std::numeric_limits<double>::infinity()) const;
 
 	// Likewise at one point with a unit normal.
 	double occlusion(glm::dvec3 position, glm::dvec3 normal) const;
 
-	// The terms of these sums, roughly, in polygon order.
+	// The terms of these sums, roughly.
 	void shares(std::span<const VolumeReceiver> receivers, std::span<std::vector<VolumeShare>> shares) const;
 
 	// Fraction of the directions of a frame about the normal (directions.h, mask.glsl) that no polygon within reach covers. δ then

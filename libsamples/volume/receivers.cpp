@@ -565,14 +565,12 @@ std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distanc
 	return points;
 }
 
-std::vector<uint32_t> nearOrder(std::span<const ReferencePoint> points)
+std::vector<uint32_t> nearOrder(std::span<const glm::vec3> points)
 {
-	const glm::dvec3 least = boundsAround(mapped(points, [](const ReferencePoint& point) { return point.position; })).least;
-	const auto positions = mapped(points, [&least](const ReferencePoint& point) { return glm::vec3(point.position - least); });
 	std::vector<uint32_t> places(points.size());
 	if (!points.empty())
 	{
-		meshopt_spatialSortRemap(places.data(), &positions[0].x, positions.size(), sizeof(glm::vec3));
+		meshopt_spatialSortRemap(places.data(), &points[0].x, points.size(), sizeof(glm::vec3));
 	}
 	std::vector<uint32_t> order(points.size());
 	for (uint32_t i = 0; i < order.size(); ++i)
@@ -582,8 +580,14 @@ std::vector<uint32_t> nearOrder(std::span<const ReferencePoint> points)
 	return order;
 }
 
+std::vector<uint32_t> nearOrder(std::span<const ReferencePoint> points)
+{
+	const glm::dvec3 least = boundsAround(mapped(points, [](const ReferencePoint& point) { return point.position; })).least;
+	return nearOrder(mapped(points, [&least](const ReferencePoint& point) { return glm::vec3(point.position - least); }));
+}
+
 std::vector<double> sumsAt(const VolumeEvaluator& evaluator, std::span<const ReferencePoint> points, const RunSettings& run,
-						   bool roughly)
+						   bool roughly, double enough)
 {
 	constexpr std::size_t kBlock = 64;
 	const std::vector<uint32_t> order = nearOrder(points);
@@ -599,7 +603,7 @@ std::vector<double> sumsAt(const VolumeEvaluator& evaluator, std::span<const Ref
 										  [&](uint32_t i) {
 											  return VolumeReceiver{points[i].position, points[i].normal};
 										  }),
-								   std::span(found).first(of.size()), roughly);
+								   std::span(found).first(of.size()), roughly, enough);
 					for (std::size_t i = 0; i < of.size(); ++i)
 					{
 						sums[of[i]] = found[i].occlusion;

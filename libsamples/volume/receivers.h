@@ -126,11 +126,12 @@ struct VerifyResult
 };
 
 // Order of points that keeps neighbours close together.
+std::vector<uint32_t> nearOrder(std::span<const glm::vec3> points);
 std::vector<uint32_t> nearOrder(std::span<const ReferencePoint> points);
 
 // Sums of volumes at points.
 std::vector<double> sumsAt(const VolumeEvaluator& evaluator, std::span<const ReferencePoint> points, const RunSettings& run,
-						   bool roughly = false);
+						   bool roughly = false, double enough = std::numeric_limits<double>::infinity());
 std::vector<double> sumsAt(const VolumeSet& volumes, std::span<const ReferencePoint> points, const RunSettings& run);
 
 VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::span<const ReferencePoint> receivers,

@@ -65,6 +65,9 @@ struct Compensation
 
 	double at(double sum) const;
 
+	// The least knot from which on at() is constant.
+	double enough() const;
+
 	// The curve of AOV's figure 7, recommended for any level: x − x²/4.
 	static std::array<double, 33> paper();
 };

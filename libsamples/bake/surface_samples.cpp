@@ -103,9 +103,10 @@ void findBuried(const Tracer& tracer, const Level& level, std::span<SurfaceSampl
 			 withoutProgress(run));
 }
 
-// Values of `base` at samples, coarse to fine: cells of a grid are halved until the values of a few of their samples agree, which
-// the others take. Samples that face another way have cells of their own, and so do those inside matter, where hardly anybody sees
-// them: these are not halved.
+// Values of `base` at samples, coarse to fine: where three samples in a cell of a grid agree, the others take their values, unless
+// rays say otherwise; else the cell is halved, and in the end each sample is evaluated. Samples that face another way have cells of
+// their own, and so do those inside matter, where hardly anybody sees them: there one sample is enough. Tuned on a cave and an
+// apartment.
 class BaseAtSamples
 {
 public:
@@ -196,12 +197,12 @@ public:
 private:
 	using Cell = std::span<const uint32_t>;
 
-	static constexpr double kCoarsest = 0.4; // of the radius
-	static constexpr int kHalvings = 4;
+	static constexpr double kCoarsest = 0.1; // of the radius
+	static constexpr int kHalvings = 1;
 	static constexpr int kBits = 19;
 	static constexpr double kDiagonal = 0.55; // component of a normal
-	static constexpr double kAgree = 0.06;
-	static constexpr double kRaysAgree = 0.2;
+	static constexpr double kAgree = 0.03;
+	static constexpr double kRaysAgree = 0.1;
 
 	std::vector<Cell> parted(const std::vector<Cell>& cells, int shift) const
 	{

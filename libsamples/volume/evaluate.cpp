@@ -2,7 +2,7 @@
 // A tree of bounding boxes finds candidates, four polygons at a time.
 #include "volume/evaluate.h"
 
-#include "core/error.h"
+#include "core/lists.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/round.h"
@@ -578,7 +578,7 @@ bool VolumeEvaluator::Data::contains(const Pack& pack, const Receiver& receiver,
 	if (anyOf(lifted)) // nookLift()
 	{
 		const Floats above = Floats{} + 1.01F * bias;
-		terms.lift = lifted ? (pack.two_sided & (terms.height < 0.0F) ? -above : above) - terms.height : terms.lift;
+		terms.lift = lifted ? ((pack.two_sided & (terms.height < 0.0F)) ? -above : above) - terms.height : terms.lift;
 		terms.height += terms.lift;
 	}
 	const Floats up = pack.two_sided ? magnitudeOf(terms.height) : terms.height;

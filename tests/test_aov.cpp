@@ -227,6 +227,37 @@ TEST_CASE("aov: two sides darken both, alike", "[aov]")
 	CHECK(evaluator.mask({0.2, 0.6, 0.1}, {0, 1, 0}, 256).visibility == Approx(1.0 - 0.5 * under).margin(0.2));
 }
 
+TEST_CASE("aov: sums of many receivers at once are those of each alone, and may stop when they suffice", "[aov]")
+{
+	const SmallView view = viewOfLevel("cornell");
+	VolumeSet set = volumesOf(view.level, 0.7, 16);
+	set.compensation = {1.0, {0.0, 0.5}};
+	std::fill(set.compensation.occlusion.begin() + 8, set.compensation.occlusion.end(), 0.5);
+	const double enough = set.compensation.enough();
+	REQUIRE(enough == 0.25);
+	CHECK(set.compensation.at(enough) == set.compensation.at(2.0));
+	const VolumeEvaluator evaluator(set, {});
+	Random random(7, 0);
+	std::vector<VolumeReceiver> receivers;
+	for (int i = 0; i < 100; ++i)
+	{
+		const glm::dvec3 at = set.occluders.corners[random.below(static_cast<uint32_t>(set.occluders.corners.size()))];
+		receivers.push_back({at + 0.2 * glm::dvec3(random.uniform(), random.uniform(), random.uniform()), {0, 1, 0}});
+	}
+	std::vector<VolumeSum> all(receivers.size());
+	std::vector<VolumeSum> few(receivers.size());
+	evaluator.sums(receivers, all);
+	evaluator.sums(receivers, few, false, enough);
+	std::size_t stopped = 0;
+	for (std::size_t i = 0; i < receivers.size(); ++i)
+	{
+		REQUIRE(all[i].occlusion == evaluator.occlusion(receivers[i].position, receivers[i].normal));
+		REQUIRE(set.compensation.at(few[i].occlusion) == set.compensation.at(all[i].occlusion));
+		stopped += few[i].volumes < all[i].volumes ? 1U : 0U;
+	}
+	CHECK(stopped > 0);
+}
+
 TEST_CASE("aov: what the tree finds is what every volume says, on any number of threads", "[aov]")
 {
 	const SmallView view = viewOfLevel("cornell");

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/json_reader.h"
+#include "core/lists.h"
 #include "scene/gbuffer.h"
 #include "scene/level_glb.h"
 #include "scene/load.h"
@@ -349,6 +350,30 @@ TEST_CASE("bake: what is baked beside something is the difference to it", "[bake
 	const BakeCheck check = checkBake(tracer, loaded.level, difference, settings, 500, {});
 	CHECK(check.rmse < 1.1 * alone.rmse);
 	CHECK(check.rmse_without > 1.5 * check.rmse);
+}
+
+TEST_CASE("bake: what it is baked beside is evaluated where it varies", "[bake]")
+{
+	const LoadedLevel loaded = loadLevel("builtin:heightfield:20000", {}, {});
+	const Tracer tracer(loaded.level, {});
+	const Bounds box = boundsOf(loaded.level);
+	BakeSettings settings = within(0.2 * glm::length(box.most - box.least));
+	const VertexBake plain = bakeVertices(tracer, settings, {});
+	std::size_t asked = 0;
+	const double middle = 0.5 * (box.least.x + box.most.x);
+	settings.base = [&](std::span<const ReferencePoint> points)
+	{
+		asked += points.size();
+		return mapped(points, [&](const ReferencePoint& point) { return point.position.x < middle ? 0.25 : 0.75; });
+	};
+	const VertexBake difference = bakeVertices(tracer, settings, {});
+	CHECK(2 * asked < difference.points);
+	for (std::size_t v = 0; v < plain.visibility.size(); ++v)
+	{
+		const double from_step = std::fabs(loaded.level.positions[v].x - middle);
+		const float base = loaded.level.positions[v].x < middle ? 0.25F : 0.75F;
+		CHECK((from_step < 0.15 * settings.radius_m || std::fabs(plain.visibility[v] - (base + difference.visibility[v])) < 0.15F));
+	}
 }
 
 // Baked values in files and in pictures of a view.

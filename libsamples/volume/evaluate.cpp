@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tree of bounding boxes finds candidates, four polygons at a time.
+// A tree of bounding boxes finds candidates, four polygons at a time. Sums and masks share it.
 #include "volume/evaluate.h"
 
 #include "core/lists.h"
@@ -8,6 +8,9 @@
 #include "core/round.h"
 #include "methods/aov_text.h"
 #include "methods/volume_kernels.h"
+#include "volume/form_factors.h"
+#include "volume/lanes.h"
+#include "volume/mask_receiver.h"
 #include "volume/receivers.h"
 #include "volume/volume_glb.h"
 #include "volume/volumes.h"
@@ -26,105 +29,6 @@ namespace nook
 
 namespace
 {
-
-// Four polygons or four edges at once, in vector types of GCC and Clang.
-using Floats = float __attribute__((vector_size(16)));
-using Ints = int32_t __attribute__((vector_size(16)));
-using Doubles = double __attribute__((vector_size(32)));
-
-struct Vectors
-{
-	Floats x;
-	Floats y;
-	Floats z;
-};
-
-Floats dotOf(const Vectors& a, const Vectors& b)
-{
-	return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-Vectors operator*(const Vectors& a, const Floats& b)
-{
-	return {a.x * b, a.y * b, a.z * b};
-}
-
-Vectors allOf(glm::vec3 v)
-{
-	return {Floats{} + v.x, Floats{} + v.y, Floats{} + v.z};
-}
-
-Floats magnitudeOf(const Floats& v)
-{
-	return v < 0.0F ? -v : v;
-}
-
-bool anyOf(const Ints& lanes)
-{
-	const auto halves = bitsAs<std::array<uint64_t, 2>>(lanes);
-	return (halves[0] | halves[1]) != 0;
-}
-
-Floats rootOf(const Floats& a)
-{
-	return Floats{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
-}
-
-// nookUnit()
-Floats unitOf(const Vectors& a)
-{
-	return 1.0F / rootOf(dotOf(a, a) > 1e-30F ? dotOf(a, a) : Floats{} + 1e-30F);
-}
-
-// The lanes of both in a row, without the first.
-Floats nextOf(const Floats& a, const Floats& b)
-{
-	return Floats{a[1], a[2], a[3], b[0]};
-}
-
-Vectors nextOf(const Vectors& a, const Vectors& b)
-{
-	return {nextOf(a.x, b.x), nextOf(a.y, b.y), nextOf(a.z, b.z)};
-}
-
-void setLane(Vectors& to, std::size_t lane, glm::vec3 v)
-{
-	to.x[lane] = v.x;
-	to.y[lane] = v.y;
-	to.z[lane] = v.z;
-}
-
-glm::vec3 laneOf(const Vectors& a, std::size_t lane)
-{
-	return {a.x[lane], a.y[lane], a.z[lane]};
-}
-
-Vectors chosen(const Ints& which, const Vectors& a, const Vectors& b)
-{
-	return {which ? a.x : b.x, which ? a.y : b.y, which ? a.z : b.z};
-}
-
-constexpr std::size_t kMostFours = kMaxOccluderCorners / 4;
-
-// Points relative to the centre of all corners, to 48 bits.
-struct Points
-{
-	Vectors high;
-	Vectors low;
-};
-
-void setLane(Points& points, std::size_t lane, glm::dvec3 point)
-{
-	const glm::vec3 high(point);
-	setLane(points.high, lane, high);
-	setLane(points.low, lane, glm::vec3(point - glm::dvec3(high)));
-}
-
-Vectors operator-(const Points& a, const Points& b)
-{
-	return {(a.high.x - b.high.x) + (a.low.x - b.low.x), (a.high.y - b.high.y) + (a.low.y - b.low.y),
-			(a.high.z - b.high.z) + (a.low.z - b.low.z)};
-}
 
 // An edge of each of four polygons. Those that a polygon lacks have the vector 0.
 struct Edges
@@ -165,41 +69,21 @@ struct Receiver
 	float bias;
 };
 
-// A polygon whose volume contains the receiver, for masks.
-struct Held
-{
-	uint32_t index = 0;
-	glm::vec3 front{0.0F};
-	float height = 0.0F; // of the receiver above the polygon, m
-	std::size_t fours = 0;
-	std::array<Vectors, kMostFours> from; // corners relative to the receiver
-	std::array<Vectors, kMostFours> to;   // the next ones
-};
-
-// The bounds of four packs' volumes, or of four nodes of the level below; unused ones are empty.
-struct Node
-{
-	Vectors low;
-	Vectors high;
-};
-
-// A box.
-struct Near
+// Four boxes: of packs' volumes, or of four nodes of the level below. Unused ones are empty.
+struct Boxes
 {
 	Vectors low;
 	Vectors high;
 
-	Near(glm::vec3 least, glm::vec3 most) : low(allOf(least)), high(allOf(most)) {}
-
-	Ints meets(const Node& node) const
+	Ints meet(const Boxes& other) const
 	{
-		return (low.x <= node.high.x) & (low.y <= node.high.y) & (low.z <= node.high.z) & (high.x >= node.low.x) &
-			   (high.y >= node.low.y) & (high.z >= node.low.z);
+		return (low.x <= other.high.x) & (low.y <= other.high.y) & (low.z <= other.high.z) & (high.x >= other.low.x) &
+			   (high.y >= other.low.y) & (high.z >= other.low.z);
 	}
 };
 
-const Node kEmptyNode{allOf(glm::vec3(std::numeric_limits<float>::infinity())),
-					  allOf(glm::vec3(-std::numeric_limits<float>::infinity()))};
+const Boxes kNoBoxes{allOf(glm::vec3(std::numeric_limits<float>::infinity())),
+					 allOf(glm::vec3(-std::numeric_limits<float>::infinity()))};
 
 // The values of four polygons at a receiver.
 struct Terms
@@ -227,7 +111,7 @@ struct VolumeEvaluator::Data
 	std::vector<uint32_t> first_four; // by polygon, and the end
 	std::vector<glm::dvec3>
 		rings; // extended outlines of the volumes in their planes, parallel to the corners; for clamped polygons
-	std::vector<std::vector<Node>> tree; // by level; the last one has the root
+	std::vector<std::vector<Boxes>> tree; // by level; the last one has the root
 
 	explicit Data(const VolumeSet& of) : set(of) {}
 
@@ -236,8 +120,8 @@ struct VolumeEvaluator::Data
 	void shape(Pack& pack, std::size_t lane, Bounds& box);
 	void addFours(std::size_t polygon);
 	void build(const RunSettings& run);
-	Node shape(std::size_t first_pack);
-	const std::vector<uint32_t>& packsAt(const Near& near) const;
+	Boxes shape(std::size_t first_pack);
+	const std::vector<uint32_t>& packsAt(const Boxes& near) const;
 	bool holds(uint32_t polygon, glm::dvec3 front, glm::dvec3 position) const;
 	Receiver receiverOf(const VolumeReceiver& receiver) const;
 	void outline(Held& held, float lift, const Receiver& receiver) const;
@@ -340,9 +224,9 @@ void VolumeEvaluator::Data::shape(Pack& pack, std::size_t lane, Bounds& box)
 }
 
 // Shapes four packs.
-Node VolumeEvaluator::Data::shape(std::size_t first_pack)
+Boxes VolumeEvaluator::Data::shape(std::size_t first_pack)
 {
-	Node node = kEmptyNode;
+	Boxes node = kNoBoxes;
 	for (std::size_t i = 0; i < 4 && first_pack + i < packs.size(); ++i)
 	{
 		Bounds box;
@@ -373,10 +257,10 @@ void VolumeEvaluator::Data::build(const RunSettings& run)
 	inBlocks(tree[0].size(), 64, run, nullptr, [this](std::size_t i) { tree[0][i] = shape(4 * i); });
 	while (tree.back().size() > 1)
 	{
-		std::vector<Node> above((tree.back().size() + 3) / 4, kEmptyNode);
+		std::vector<Boxes> above((tree.back().size() + 3) / 4, kNoBoxes);
 		for (std::size_t i = 0; i < tree.back().size(); ++i)
 		{
-			const Node& node = tree.back()[i];
+			const Boxes& node = tree.back()[i];
 			glm::vec3 low = laneOf(node.low, 0);
 			glm::vec3 high = laneOf(node.high, 0);
 			for (std::size_t lane = 1; lane < 4; ++lane)
@@ -392,7 +276,7 @@ void VolumeEvaluator::Data::build(const RunSettings& run)
 }
 
 // Those with volumes near, ascending. Without branches, which would be mispredicted.
-const std::vector<uint32_t>& VolumeEvaluator::Data::packsAt(const Near& near) const
+const std::vector<uint32_t>& VolumeEvaluator::Data::packsAt(const Boxes& near) const
 {
 	thread_local std::vector<uint32_t> found;
 	thread_local std::vector<uint32_t> above;
@@ -404,7 +288,7 @@ const std::vector<uint32_t>& VolumeEvaluator::Data::packsAt(const Near& near) co
 		std::size_t count = 0;
 		for (const uint32_t index : above)
 		{
-			const Ints met = near.meets(tree[level][index]);
+			const Ints met = near.meet(tree[level][index]);
 			for (uint32_t lane = 0; lane < 4; ++lane)
 			{
 				found[count] = 4 * index + lane;
@@ -485,88 +369,6 @@ Receiver VolumeEvaluator::Data::receiverOf(const VolumeReceiver& receiver) const
 			static_cast<float>(bias)};
 }
 
-namespace
-{
-
-// nookArc()
-Floats arcOf(const Floats& x)
-{
-	const Floats p = 0.522759580F + x * (-0.345475831F + x * (0.152677448F - x * 0.0317200786F));
-	return 1.57079595F + x * (-0.999943104F + x * (0.783984789F + x * (-0.653083218F + x * p)));
-}
-
-// nookFormFactor() of the polygons among `held`; repeated corners change nothing. Edges that appear nearly as long as half a turn
-// take more digits: the kernel itself evaluates such polygons.
-Floats formFactors(std::span<const Vectors> corners, const Vectors& n, const Floats& side, const Ints& held)
-{
-	const Floats upward = n.z < 0.0F ? Floats{} - 1.0F : Floats{} + 1.0F;
-	const Floats q = -1.0F / (upward + n.z);
-	const Floats mixed = n.x * n.y * q;
-	const Vectors right{1.0F + upward * n.x * n.x * q, upward * mixed, -upward * n.x};
-	const Vectors forward{mixed, upward + n.y * n.y * q, -n.y};
-	const auto directionOf = [&](const Vectors& corner)
-	{
-		const Vectors away = corner * unitOf(corner);
-		return Vectors{dotOf(away, right), dotOf(away, forward), dotOf(away, n)};
-	};
-	Vectors from = directionOf(corners.back());
-	Floats edges{};
-	Vectors cut{Floats{} + 1.0F, Floats{}, Floats{}};
-	Ints hard{};
-	for (const Vectors& corner : corners)
-	{
-		const Vectors to = directionOf(corner);
-		const Ints above = held & ((from.z > 0.0F) | (to.z > 0.0F));
-		if (anyOf(above))
-		{
-			Floats cosine = dotOf(from, to);
-			Vectors first = from;
-			Vectors last = to;
-			hard |= above & (cosine < -0.95F);
-			const Ints exits = above & (to.z <= 0.0F);
-			const Ints crosses = exits | (above & (from.z <= 0.0F));
-			if (anyOf(crosses))
-			{
-				const Floats wa = magnitudeOf(to.z);
-				const Floats wb = magnitudeOf(from.z);
-				Vectors node{from.x * wa + to.x * wb, from.y * wa + to.y * wb, Floats{}};
-				node = node * unitOf(node);
-				first = chosen(crosses & ~exits, node, from);
-				last = chosen(exits, node, to);
-				cosine = dotOf(first, last);
-				const Floats turn = exits ? node.y : -node.y;
-				cut = chosen(crosses, {cut.x * node.x - cut.y * turn, cut.x * turn + cut.y * node.x, Floats{}}, cut);
-			}
-			const Floats sine = last.x * first.y - last.y * first.x;
-			const Floats term = sine * arcOf(magnitudeOf(cosine));
-			const Ints obtuse = above & (cosine < 0.0F);
-			const Floats rest = anyOf(obtuse) ? 3.14159265F * (sine / rootOf(1.0F - cosine * cosine)) - term : term;
-			edges += above ? (obtuse ? rest : term) : Floats{};
-		}
-		from = to;
-	}
-	const Floats arc = arcOf(magnitudeOf(cut.x));
-	const Floats rise = side * cut.y;
-	const Floats cuts = cut.x < 0.0F ? 3.14159265F - arc * magnitudeOf(rise) : arc * rise;
-	Floats factor = (side * edges + cuts) * 0.159154943F;
-	factor = factor > 0.0F ? factor : Floats{};
-	factor = factor < 1.0F ? factor : Floats{} + 1.0F;
-	for (std::size_t lane = 0; anyOf(hard) && lane < 4; ++lane)
-	{
-		if (hard[lane] != 0)
-		{
-			std::array<glm::vec3, kMaxOccluderCorners> of_lane;
-			std::transform(corners.begin(), corners.end(), of_lane.begin(), [lane](const Vectors& v) { return laneOf(v, lane); });
-			volume_kernels::Kernels kernels;
-			kernels.corners = of_lane;
-			factor[lane] = kernels.nookFormFactor(static_cast<int>(corners.size()), laneOf(n, lane), side[lane]);
-		}
-	}
-	return factor;
-}
-
-} // namespace
-
 // Returns false if no volume of the pack contains the receiver; else fills in all but the shares.
 bool VolumeEvaluator::Data::contains(const Pack& pack, const Receiver& receiver, Terms& terms) const
 {
@@ -640,8 +442,8 @@ void VolumeEvaluator::Data::share(const Pack& pack, const Receiver& receiver, bo
 template <class Use> void VolumeEvaluator::Data::visitTerms(std::span<const VolumeReceiver> of, bool roughly, const Use& use) const
 {
 	std::array<Receiver, kAtOnce> receivers;
-	std::array<Node, kAtOnce / 4> boxes;
-	boxes.fill(kEmptyNode);
+	std::array<Boxes, kAtOnce / 4> boxes;
+	boxes.fill(kNoBoxes);
 	glm::vec3 least(std::numeric_limits<float>::infinity());
 	glm::vec3 most = -least;
 	for (std::size_t i = 0; i < of.size(); ++i)
@@ -655,13 +457,13 @@ template <class Use> void VolumeEvaluator::Data::visitTerms(std::span<const Volu
 		most = glm::max(most, at + radius);
 	}
 	Terms terms;
-	for (const uint32_t index : packsAt(Near(least, most)))
+	for (const uint32_t index : packsAt({allOf(least), allOf(most)}))
 	{
-		const Node& node = tree[0][index / 4];
-		const Near box(laneOf(node.low, index % 4), laneOf(node.high, index % 4));
+		const Boxes& node = tree[0][index / 4];
+		const Boxes box{allOf(laneOf(node.low, index % 4)), allOf(laneOf(node.high, index % 4))};
 		for (std::size_t four = 0; 4 * four < of.size(); ++four)
 		{
-			const Ints met = box.meets(boxes[four]);
+			const Ints met = box.meet(boxes[four]);
 			for (std::size_t lane = 0; lane < 4; ++lane)
 			{
 				const std::size_t i = 4 * four + lane;
@@ -670,7 +472,7 @@ template <class Use> void VolumeEvaluator::Data::visitTerms(std::span<const Volu
 					share(packs[index], receivers[i], roughly, terms);
 					if (use(i, packs[index], terms))
 					{
-						setLane(boxes[four].low, lane, laneOf(kEmptyNode.low, 0));
+						setLane(boxes[four].low, lane, laneOf(kNoBoxes.low, 0));
 					}
 				}
 			}
@@ -733,116 +535,6 @@ void VolumeEvaluator::shares(std::span<const VolumeReceiver> receivers, std::spa
 	}
 }
 
-namespace
-{
-
-using MaskBits = std::array<glm::uvec4, kMostDirections / 128>;
-
-// a.y * b.z - b.y * a.z. Products of 32-bit floats are exact in 64 bits, as the kernel's split ones nearly are.
-Floats exactProducts(Floats ay, Floats bz, Floats by, Floats az)
-{
-	const Doubles left = __builtin_convertvector(ay, Doubles) * __builtin_convertvector(bz, Doubles);
-	return __builtin_convertvector(left - __builtin_convertvector(by, Doubles) * __builtin_convertvector(az, Doubles), Floats);
-}
-
-// A receiver of masks. Its functions return what those of mask.glsl do, but compute the frame once per receiver, and only rays that
-// no edge has ruled out.
-class MaskReceiver
-{
-public:
-	MaskReceiver(glm::vec3 normal, const MaskTables& tables, float reach)
-		: m_normal(normal), m_x(m_kernels.nookTangent(normal, 0)), m_y(m_kernels.nookTangent(normal, 1)), m_tables(tables),
-		  m_fours(static_cast<int>(tables.rays.size() / 128)), m_reach(reach)
-	{
-	}
-
-	// Removes the bits that nookMaskBits() has for the polygon.
-	void cover(const Held& held, const Occluder& polygon, MaskBits& open)
-	{
-		const float side = held.height < 0.0F ? -1.0F : 1.0F;
-		const float least = std::fabs(held.height) / m_reach;
-		const glm::vec3 down =
-			glm::vec3(glm::dot(held.front, m_x), glm::dot(held.front, m_y), glm::dot(held.front, m_normal)) * -side;
-		if (down.z < 0.0F && least * least > down.x * down.x + down.y * down.y + 1e-3F)
-		{
-			return; // no ray of the hemisphere reaches the plane
-		}
-		MaskBits bits = open;
-		for (std::size_t i = 0; i < held.fours; ++i)
-		{
-			if (!cutByEdges(held.from[i], held.to[i], side, bits))
-			{
-				return;
-			}
-		}
-		const float shift = m_kernels.nookShift(static_cast<int>(polygon.first_corner));
-		for (int word = 0; word < 4 * m_fours; ++word)
-		{
-			uint32_t& left = open[static_cast<std::size_t>(word / 4)][word % 4];
-			uint32_t asked = bits[static_cast<std::size_t>(word / 4)][word % 4];
-			if (asked != 0 && polygon.alpha < 1.0F)
-			{
-				asked &= m_kernels.nookMaskShare(word, polygon.alpha, shift);
-			}
-			for (; asked != 0; asked &= asked - 1)
-			{
-				const int i = std::countr_zero(asked);
-				const glm::vec3& ray = m_tables.rays[static_cast<std::size_t>(32 * word + i)];
-				left &= ~(uint32_t{glm::dot(ray, down) > least} << i);
-			}
-		}
-	}
-
-private:
-	// nookInsideEdge() of nookInward(). Returns false if no bit remains.
-	bool cutByEdges(const Vectors& from, const Vectors& to, float side, MaskBits& bits)
-	{
-		const Vectors across{exactProducts(to.y, from.z, from.y, to.z), exactProducts(to.z, from.x, from.z, to.x),
-							 exactProducts(to.x, from.y, from.x, to.y)};
-		const Vectors inward{dotOf(across, allOf(m_x)) * side, dotOf(across, allOf(m_y)) * side,
-							 dotOf(across, allOf(m_normal)) * side};
-		const Floats size = magnitudeOf(inward.x) + magnitudeOf(inward.y) + magnitudeOf(inward.z);
-		const Floats sign = inward.z != 0.0F ? inward.z : inward.y != 0.0F ? inward.y : inward.x;
-		const int texels = m_kernels.nookHalfSpaces();
-		const float half_side = 0.5F * static_cast<float>(texels);
-		const Floats positive = half_side / (size > 1e-37F ? size : Floats{} + 1e-37F);
-		const Floats scale = sign < 0.0F ? -positive : positive;
-		const Ints x = __builtin_convertvector(half_side + scale * (inward.x + inward.y), Ints);
-		const Ints y = __builtin_convertvector(half_side + scale * (inward.x - inward.y), Ints);
-		for (std::size_t i = 0; i < 4; ++i)
-		{
-			if (!(size[i] > 0.0F))
-			{
-				continue;
-			}
-			const glm::uvec4 other(sign[i] < 0.0F ? ~0U : 0U);
-			const int texel = std::min(y[i], texels - 1) * texels + std::min(x[i], texels - 1);
-			uint32_t any = 0;
-			for (int four = 0; four < m_fours; ++four)
-			{
-				glm::uvec4& cut = bits[static_cast<std::size_t>(four)];
-				cut &= m_tables.half_spaces[static_cast<std::size_t>(four * texels * texels + texel)] ^ other;
-				any |= cut.x | cut.y | cut.z | cut.w;
-			}
-			if (any == 0)
-			{
-				return false;
-			}
-		}
-		return true;
-	}
-
-	volume_kernels::Kernels m_kernels;
-	glm::vec3 m_normal;
-	glm::vec3 m_x;
-	glm::vec3 m_y;
-	const MaskTables& m_tables;
-	int m_fours;
-	float m_reach;
-};
-
-} // namespace
-
 VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, int directions, double bias_m) const
 {
 	assert(m_data->packs.empty() || !m_data->fours.empty());
@@ -857,7 +549,7 @@ VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, int dir
 	const float radius = m_data->grown + at.bias;
 	Held held;
 	Terms terms;
-	for (const uint32_t index : m_data->packsAt(Near(point - radius, point + radius)))
+	for (const uint32_t index : m_data->packsAt({allOf(point - radius), allOf(point + radius)}))
 	{
 		const Pack& pack = m_data->packs[index];
 		const bool any = m_data->contains(pack, at, terms);

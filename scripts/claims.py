@@ -114,6 +114,8 @@ def claims_of_view(name, view, rows):
     if ratios:
         noise, error = (math.exp(sum(math.log(r[i]) for r in ratios) / len(ratios)) for i in (0, 1))
         rows["lines"].append([name, noise, error, "holds" if noise > 1.0 else "does not"])
+    elif lines and points:
+        rows["lines"].append([name, "–", "–", "no count of points takes as long as lines do"])
     five, twelve = named(view, "vo-line 5 electro window"), named(view, "vo-point 12 electro window")
     if five and twelve and five["own_rmse"] and twelve["own_rmse"]:
         ratio = five["own_rmse"] / twelve["own_rmse"]

@@ -104,6 +104,45 @@ private:
 	std::vector<Receiver> m_receivers;
 };
 
+// A volume's parts by their steps from the outside, in the order given.
+class TrimQueue
+{
+public:
+	static constexpr uint32_t kNone = 0xffffffffU;
+
+	// `most`: the greatest number of steps.
+	void fill(std::span<const TrimPart> parts, int way, uint32_t step, uint32_t most)
+	{
+		const uint32_t factor = (1U << 22U) / step + 1; // divides integers below 1024 exactly
+		std::fill_n(m_first.begin(), most + 1, kNone);
+		m_next.resize(std::max(m_next.size(), parts.size()));
+		for (auto i = static_cast<uint32_t>(parts.size()); i-- > 0;)
+		{
+			uint32_t& first = m_first[parts[i].along(way) * factor >> 22U];
+			m_next[i] = std::exchange(first, i);
+		}
+	}
+
+	bool isEmpty(uint32_t steps) const
+	{
+		return m_first[steps] == kNone;
+	}
+
+	uint32_t first(uint32_t steps) const
+	{
+		return m_first[steps];
+	}
+
+	uint32_t next(uint32_t part) const
+	{
+		return m_next[part];
+	}
+
+private:
+	std::array<uint32_t, 1024> m_first{};
+	std::vector<uint32_t> m_next;
+};
+
 // A volume that is made smaller step by step.
 class Shrinking
 {
@@ -140,22 +179,22 @@ public:
 	}
 
 	// Repeatedly removes what saves most, while the loss is below `price` per squared distance saved.
-	void shrink(TrimAllowances& allowances, double price)
+	void shrink(TrimAllowances& allowances, double price, TrimQueue& queue)
 	{
 		for (;;)
 		{
 			Step best;
 			for (int way = 0; way < kWays; ++way)
 			{
-				look(way, allowances, price, best);
+				look(way, allowances, price, queue, best);
 			}
 			if (best.value <= 0.0)
 			{
 				return;
 			}
 			m_reach = best.reach;
-			const auto lost = std::partition(m_parts.begin(), m_parts.begin() + static_cast<std::ptrdiff_t>(m_left),
-											 [this](const TrimPart& part) { return !isBeyond(part, m_reach); });
+			const auto lost = std::stable_partition(m_parts.begin(), m_parts.begin() + static_cast<std::ptrdiff_t>(m_left),
+													[this](const TrimPart& part) { return !isBeyond(part, m_reach); });
 			const auto left = static_cast<std::size_t>(lost - m_parts.begin());
 			for (const TrimPart& part : m_parts.subspan(left, m_left - left))
 			{
@@ -196,45 +235,30 @@ private:
 		VolumeReach reach;
 	};
 
-	struct Place
-	{
-		uint64_t order = 0; // distance from the outside, then the lowest receiver
-		uint32_t part = 0;
-
-		bool operator<(const Place& other) const
-		{
-			return order < other.order;
-		}
-	};
-
 	static VolumeReach cutTo(int way, VolumeReach reach, uint32_t along)
 	{
 		const float to = static_cast<float>(along) / 1024.0F;
 		return {way == 1 ? reach.height : std::min(reach.height, to), way == 0 ? reach.side : std::min(reach.side, to)};
 	}
 
-	Place placeOf(int way, uint32_t part) const
-	{
-		const uint32_t step = way == 1 ? static_cast<uint32_t>(m_reach.height * 128.0F) : 8; // file steps, in 1/1024
-		return {uint64_t{m_parts[part].along(way, step)} << 32U | ~m_parts[part].receiver(), part};
-	}
-
 	void findFirst()
 	{
-		std::array<Place, kWays> first{};
-		for (uint32_t i = 0; i < m_left; ++i)
+		m_first.fill({});
+		for (const TrimPart& part : m_parts.first(m_left))
 		{
 			for (std::size_t way = 0; way < kWays; ++way)
 			{
-				first[way] = std::max(first[way], placeOf(static_cast<int>(way), i));
+				const auto along = [way](const TrimPart& of)
+				{
+					return of.along(static_cast<int>(way));
+				};
+				m_first[way] = along(part) > along(m_first[way]) ? part : m_first[way];
 			}
 		}
-		std::transform(first.begin(), first.end(), m_first.begin(), [](const Place& place) { return place.part; });
 	}
 
-	// Outermost parts first, while the cost is acceptable. That is usually short, so only the first one is kept between looks, and
-	// further ones are found by a heap.
-	void look(int way, const TrimAllowances& allowances, double price, Step& best) const
+	// Outermost parts first, while the cost is acceptable.
+	void look(int way, const TrimAllowances& allowances, double price, TrimQueue& queue, Step& best) const
 	{
 		const double now = surface(m_reach);
 		const double most = price * (now - surface(cutTo(way, m_reach, 0)));
@@ -242,29 +266,29 @@ private:
 		{
 			return !allowances.canTake(part) || most - (before + allowances.lossOf(part)) <= best.value;
 		};
-		if (m_left == 0 || isTooMuch(m_parts[m_first[static_cast<std::size_t>(way)]], 0.0))
+		if (m_left == 0 || isTooMuch(m_first[static_cast<std::size_t>(way)], 0.0))
 		{
 			return;
 		}
-		std::vector<Place> places = listOf(m_left, [&](std::size_t i) { return placeOf(way, static_cast<uint32_t>(i)); });
-		std::make_heap(places.begin(), places.end());
+		const uint32_t step = way == 1 ? static_cast<uint32_t>(m_reach.height * 128.0F) : 8; // of files, in 1/1024
+		const uint32_t outermost = m_first[static_cast<std::size_t>(way)].along(way) / step;
+		queue.fill(m_parts.first(m_left), way, step, outermost);
 		double loss = 0.0;
-		while (!places.empty())
+		for (uint32_t steps = outermost; steps > 0; --steps)
 		{
-			const Place place = places.front();
-			const TrimPart& part = m_parts[place.part];
-			if (place.order >> 32U == 0 || isTooMuch(part, loss))
+			if (queue.isEmpty(steps))
 			{
-				return; // everything after it costs more
+				continue;
 			}
-			loss += allowances.lossOf(part);
-			std::pop_heap(places.begin(), places.end());
-			places.pop_back();
-			if (!places.empty() && places.front().order >> 32U == place.order >> 32U)
+			for (uint32_t i = queue.first(steps); i != TrimQueue::kNone; i = queue.next(i))
 			{
-				continue; // both or neither
+				if (isTooMuch(m_parts[i], loss))
+				{
+					return; // everything after it costs more
+				}
+				loss += allowances.lossOf(m_parts[i]);
 			}
-			const VolumeReach reach = cutTo(way, m_reach, static_cast<uint32_t>(place.order >> 32U));
+			const VolumeReach reach = cutTo(way, m_reach, steps * step);
 			const double value = price * (now - surface(reach)) - loss;
 			if (value > best.value)
 			{
@@ -273,12 +297,12 @@ private:
 		}
 	}
 
-	std::span<TrimPart> m_parts; // remaining parts first, then lost ones
+	std::span<TrimPart> m_parts; // remaining parts first, by receiver, then lost ones
 	std::size_t m_left = 0;
-	std::array<uint32_t, kWays> m_first{}; // the outermost remaining part of each way
-	double m_area = 0.0;                   // polygon area, in squared distances
-	double m_outline = 0.0;                // polygon perimeter, in distances
-	double m_mitres = 0.0;                 // growth at corners, in squares of the side
+	std::array<TrimPart, kWays> m_first; // an outermost remaining part of each way
+	double m_area = 0.0;                 // polygon area, in squared distances
+	double m_outline = 0.0;              // polygon perimeter, in distances
+	double m_mitres = 0.0;               // growth at corners, in squares of the side
 	double m_sides = 1.0;
 	VolumeReach m_reach;
 };
@@ -471,12 +495,13 @@ TrimCounts trimVolumes(VolumeSet& volumes, std::span<const ReferencePoint> recei
 	progress.finishOne();
 	TrimAllowances allowances(asked.sums, settings.share);
 	const double last = kExchange * settings.share * settings.share * evenPrice(shrinking, asked, allowances);
+	TrimQueue queue;
 	for (int round = kRounds; round >= 0; --round)
 	{
 		const double price = std::ldexp(last, -round);
 		for (Shrinking& volume : shrinking)
 		{
-			volume.shrink(allowances, price);
+			volume.shrink(allowances, price, queue);
 		}
 		progress.finishOne();
 	}

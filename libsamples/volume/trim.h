@@ -63,6 +63,7 @@ struct VolumeReach
 class TrimPart
 {
 public:
+	TrimPart() = default;
 	TrimPart(uint32_t receiver, float occlusion, VolumeReach needed) : m_receiver(receiver)
 	{
 		const uint32_t fraction = bitsAs<uint32_t>(std::max(occlusion, 0x1p-31F)) + 0x1fffU;
@@ -88,10 +89,10 @@ public:
 		return {static_cast<float>(height()) / 1024.0F, static_cast<float>(side()) / 1024.0F};
 	}
 
-	// The greatest step in 1/1024 of a way (lower, narrower, both) that excludes the receiver; 0: none does.
-	uint32_t along(int way, uint32_t step) const
+	// The greatest reach in 1/1024 that excludes the receiver by a way: lower, narrower, both. 0: none does.
+	uint32_t along(int way) const
 	{
-		return (way == 0 ? height() : way == 1 ? side() : std::max(height(), side())) / step * step;
+		return way == 0 ? height() : way == 1 ? side() : std::max(height(), side());
 	}
 
 private:
@@ -106,8 +107,8 @@ private:
 
 	static constexpr uint32_t kLeastExponent = 96U << 10U; // of 2⁻³¹
 
-	uint32_t m_receiver;
-	uint32_t m_bits; // from the top: five bits of exponent and ten of fraction, seven of height, ten of side
+	uint32_t m_receiver = 0;
+	uint32_t m_bits = 0; // from the top: five bits of exponent and ten of fraction, seven of height, ten of side
 };
 
 } // namespace nook

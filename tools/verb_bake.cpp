@@ -409,12 +409,12 @@ Made makeAuto(const BakeOptions& options, const BakeInput& input, Facts& facts, 
 	settings.max_error = 0.0;
 	const AutoSettings wanted{options.settings.max_error, options.max_bytes, options.charts.margin_px,
 							  settings.sides == BakeSides::mean};
-	const std::vector<std::size_t> vertex_bytes = vertexBytes(target.file, target.places);
+	const std::vector<GltfCost> costs = costsOf(target.file, target.places);
 	const std::size_t value_bytes = settings.sides == BakeSides::separate ? 8 : 4;
 	const auto costOf = [&](std::size_t i)
 	{
 		const GltfPlace& place = target.places[i];
-		return AutoPiece{vertex_bytes[i] + value_bytes, place.count, !place.instance};
+		return AutoPiece{{costs[i].vertex_bytes + value_bytes, costs[i].has_list}, place.count, !place.instance};
 	};
 	Made made;
 	std::optional<GltfBaked> baked;

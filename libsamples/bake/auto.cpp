@@ -349,24 +349,21 @@ private:
 			double gain = 0.0;
 			double bytes = 0.0;
 			double square = 0.0;
-			std::size_t textured = 0;
 			std::vector<std::size_t> charts;
 		};
 		std::vector<Piece> pieces(m_pieces.size());
 		for (std::size_t c = 0; c < m_charts.size(); ++c)
 		{
 			const ChartFacts& chart = m_charts[c];
-			const AutoPiece& cost = m_costs[chart.piece];
+			const GltfCost& cost = m_costs[chart.piece].cost;
 			Piece& piece = pieces[chart.piece];
 			double best = 0.0;
 			double bytes = 0.0;
 			double square = 0.0;
-			const double back =
-				3.0 * indexBytes(cost.vertices) * static_cast<double>(chart.triangles); // the rest has fewer indices
 			for (int level = kCoarsest; chart.is_open && level <= kFinest && fitsPage(chart, level); ++level)
 			{
-				const double here = static_cast<double>(chart.vertices * (cost.bytes + 4) + 6 * chart.triangles) +
-									m_texel_bytes * texelsOf(chart, level) - back;
+				const double here = static_cast<double>(chart.vertices * (cost.vertex_bytes + 4) + 6 * chart.triangles) +
+									m_texel_bytes * texelsOf(chart, level);
 				const double saved =
 					chart.weight * (chart.at_vertices - std::max(kLeastSquare, chart.in_texture * std::exp2(-kOrder * level)));
 				if (saved - price * here > best)
@@ -382,13 +379,12 @@ private:
 				piece.gain += best;
 				piece.bytes += bytes;
 				piece.square += square;
-				piece.textured += chart.triangles;
 				piece.charts.push_back(c);
 			}
 		}
-		for (std::size_t p = 0; p < pieces.size(); ++p)
+		for (std::size_t p = 0, first = 0; p < pieces.size(); first += m_pieces[p].triangles.size(), ++p)
 		{
-			const double rest = 3.0 * indexBytes(m_costs[p].vertices) * static_cast<double>(m_pieces[p].triangles.size());
+			const double rest = pieces[p].charts.empty() ? 0.0 : restBytes(p, first, choice);
 			if (pieces[p].gain <= price * rest)
 			{
 				for (const std::size_t c : pieces[p].charts)
@@ -403,9 +399,17 @@ private:
 		return choice;
 	}
 
-	static double indexBytes(std::size_t vertices)
+	// Indices of a piece's triangles that keep values, of which `first` is the number of the piece's first.
+	double restBytes(std::size_t piece, std::size_t first, const Choice& choice) const
 	{
-		return vertices <= kShort ? 2.0 : 4.0;
+		const std::vector<bool> rests = listOf(m_pieces[piece].triangles.size(),
+											   [&](std::size_t i)
+											   {
+												   const uint32_t chart = m_charted.of_triangle[first + i];
+												   return chart == kNoIndex || choice.levels[chart] == kVertices;
+											   });
+		const std::size_t count = m_costs[piece].cost.has_list ? runsOf(rests).others.size() : rests.size();
+		return static_cast<double>(count) * (m_costs[piece].vertices <= kShort ? 6.0 : 12.0);
 	}
 
 	// The price at which the choice fits: bytes, or the error.

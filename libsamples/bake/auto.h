@@ -20,7 +20,7 @@ struct AutoSettings
 // A glTF primitive at a place.
 struct AutoPiece
 {
-	std::size_t bytes = 0;    // of a vertex in all its arrays, with its values
+	GltfCost cost;            // with the values of a vertex
 	std::size_t vertices = 0; // of the primitive
 	bool takes_texture = true;
 };

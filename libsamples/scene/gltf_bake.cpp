@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 #include <tuple>
@@ -553,6 +554,14 @@ int firstFreeSet(const Document& attributes)
 	return set;
 }
 
+bool hasList(GltfEditor& editor, const Document& primitive)
+{
+	const std::size_t indices = numberIn(primitive, "indices");
+	return indices != kNoNumber && numberIn(primitive, "mode", 4) == 4 &&
+		   numberIn(editor.items("accessors")[indices], "bufferView") != kNoNumber &&
+		   !editor.items("accessors")[indices].contains("sparse");
+}
+
 std::set<std::size_t> meshesOfOthers(GltfEditor& editor, const std::vector<MeshUnit>& units)
 {
 	std::set<std::size_t> nodes;
@@ -577,7 +586,7 @@ void checkTarget(const GltfFile& file, std::span<const GltfPlace> places, const 
 	Baker(editor, bake).check(places);
 }
 
-std::vector<std::size_t> vertexBytes(const GltfFile& file, std::span<const GltfPlace> places)
+std::vector<GltfCost> costsOf(const GltfFile& file, std::span<const GltfPlace> places)
 {
 	GltfEditor editor(file, "-");
 	const auto bytesOf = [&editor](const Document& arrays) // of an element of each
@@ -590,13 +599,53 @@ std::vector<std::size_t> vertexBytes(const GltfFile& file, std::span<const GltfP
 								  4;
 					   });
 	};
-	return mapped(places,
-				  [&](const GltfPlace& place)
-				  {
-					  const Document& primitive =
-						  editor.primitiveOf(numberIn(editor.items("nodes")[place.node], "mesh"), place.primitive);
-					  return bytesOf(primitive["attributes"]) + sumOver(primitive.value("targets", Document::array()), bytesOf);
-				  });
+	return mapped(
+		places,
+		[&](const GltfPlace& place)
+		{
+			const Document& primitive = editor.primitiveOf(numberIn(editor.items("nodes")[place.node], "mesh"), place.primitive);
+			return GltfCost{bytesOf(primitive["attributes"]) + sumOver(primitive.value("targets", Document::array()), bytesOf),
+							hasList(editor, primitive)};
+		});
+}
+
+TriangleRuns runsOf(const std::vector<bool>& remains)
+{
+	constexpr std::size_t kShortest = 128;                 // triangles; a primitive and its accessor take about 500 bytes of JSON
+	constexpr std::size_t kMost = 16;                      // each is drawn by itself
+	std::vector<std::pair<std::size_t, std::size_t>> runs; // length, then the first from the end
+	for (std::size_t i = 0; i < remains.size(); ++i)
+	{
+		if (remains[i] && (i == 0 || !remains[i - 1]))
+		{
+			runs.emplace_back(0, remains.size() - i);
+		}
+		if (remains[i])
+		{
+			runs.back().first += 1;
+		}
+	}
+	std::sort(runs.begin(), runs.end(), std::greater<>());
+	TriangleRuns made;
+	std::vector<bool> is_other = remains;
+	for (const auto& [count, from_end] : std::span(runs).first(std::min(kMost, runs.size())))
+	{
+		const std::size_t first = remains.size() - from_end;
+		if (count >= kShortest)
+		{
+			made.runs.emplace_back(first, count);
+			std::fill_n(is_other.begin() + static_cast<std::ptrdiff_t>(first), count, false);
+		}
+	}
+	std::sort(made.runs.begin(), made.runs.end());
+	for (std::size_t i = 0; i < is_other.size(); ++i)
+	{
+		if (is_other[i])
+		{
+			made.others.push_back(i);
+		}
+	}
+	return made;
 }
 
 GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, const GltfBake& bake,

@@ -31,6 +31,9 @@ inline std::string setName(int set)
 
 int firstFreeSet(const GltfEditor::Document& attributes);
 
+// Are its indices a list of triangles, of which other accessors can read a part?
+bool hasList(GltfEditor& editor, const GltfEditor::Document& primitive);
+
 // A number as one of that component type. `normalized`: 1 is the greatest integer.
 void appendComponent(std::string& bytes, uint64_t component, double value, bool normalized);
 

@@ -174,8 +174,22 @@ GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, cons
 // Throws as bakeInto() does for what depends on the file alone, before there are values. `bake.charts`: not empty for charts.
 void checkTarget(const GltfFile& file, std::span<const GltfPlace> places, const GltfBake& bake);
 
-// Bytes of a vertex of each place's primitive, in all its arrays.
-std::vector<std::size_t> vertexBytes(const GltfFile& file, std::span<const GltfPlace> places);
+// What each place's primitive has.
+struct GltfCost
+{
+	std::size_t vertex_bytes = 0; // in all its arrays
+	bool has_list = false;        // indices of a list of triangles, of which runs can be drawn
+};
+std::vector<GltfCost> costsOf(const GltfFile& file, std::span<const GltfPlace> places);
+
+// The triangles that remain of a list: long runs of them, first and number, in order; and numbers of the others, which need new
+// indices.
+struct TriangleRuns
+{
+	std::vector<std::pair<std::size_t, std::size_t>> runs;
+	std::vector<std::size_t> others;
+};
+TriangleRuns runsOf(const std::vector<bool>& remains);
 
 // asset.extras.nook of a .gltf or .glb file; null without a bake, and for other files.
 nlohmann::ordered_json bakeRecordOf(const std::string& path);

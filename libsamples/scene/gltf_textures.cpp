@@ -2,6 +2,7 @@
 // Gives the materials of a glTF file a baked texture, and primitives the coordinates for it.
 #include "core/file.h"
 #include "core/image.h"
+#include "core/lists.h"
 #include "scene/gltf_bake.h"
 
 #include <algorithm>
@@ -252,6 +253,60 @@ private:
 		return accessor->second;
 	}
 
+	// The file's own accessor of a primitive's indices, from a triangle on.
+	std::size_t runOf(std::size_t indices, std::size_t first, std::size_t count)
+	{
+		const auto [accessor, is_new] = m_runs.try_emplace({indices, first, count}, m_editor.items("accessors").size());
+		if (is_new)
+		{
+			const Document& all = m_editor.items("accessors")[indices];
+			const std::size_t component = numberIn(all, "componentType");
+			Document run{{"bufferView", all["bufferView"]},
+						 {"byteOffset", numberIn(all, "byteOffset", 0) + 3 * first * bytesOfComponent(component)},
+						 {"componentType", component},
+						 {"count", 3 * count},
+						 {"type", "SCALAR"}};
+			m_editor.items("accessors").push_back(std::move(run));
+		}
+		return accessor->second;
+	}
+
+	// Accessors for the triangles that no page has: long runs of the file's indices, and new indices for the others.
+	std::vector<std::size_t> restOf(const Document& primitive, const std::vector<uint32_t>& rest, bool is_short)
+	{
+		const std::size_t indices = numberIn(primitive, "indices");
+		std::vector<bool> remains; // of the file's triangles
+		std::size_t next = 0;      // in `rest`, which has their order
+		if (hasList(m_editor, primitive))
+		{
+			const GltfValues values(m_editor.file, indices);
+			for (std::size_t i = 0; i + 3 <= values.count(); i += 3)
+			{
+				remains.push_back(next < rest.size() && values.index(i) == rest[next] && values.index(i + 1) == rest[next + 1] &&
+								  values.index(i + 2) == rest[next + 2]);
+				next += remains.back() ? 3U : 0U;
+			}
+		}
+		if (next < rest.size())
+		{
+			return {indicesOf(rest, is_short)};
+		}
+		const TriangleRuns kept = runsOf(remains);
+		std::vector<std::size_t> accessors =
+			mapped(kept.runs, [&](const auto& run) { return runOf(indices, run.first, run.second); });
+		std::vector<uint32_t> others;
+		const GltfValues values(m_editor.file, indices);
+		for (const std::size_t t : kept.others)
+		{
+			others.insert(others.end(), {values.index(3 * t), values.index(3 * t + 1), values.index(3 * t + 2)});
+		}
+		if (!others.empty())
+		{
+			accessors.push_back(indicesOf(others, is_short));
+		}
+		return accessors;
+	}
+
 	// Coordinates on pages; in 16 bits if `is_short`: a sixteenth of a texel of 4096.
 	std::size_t coordinatesOf(const std::vector<glm::vec2>& uvs, bool is_short)
 	{
@@ -301,11 +356,16 @@ private:
 		std::size_t at = number; // further pages go behind the mesh's primitives
 		if (!charts.rest.empty())
 		{
-			Document& rest = m_editor.primitiveOf(mesh, number);
+			Document rest = m_editor.primitiveOf(mesh, number);
 			rest["mode"] = 4U;
-			rest["indices"] = indicesOf(charts.rest, place.count <= kShort);
-			at = m_editor.items("meshes")[mesh]["primitives"].size();
-			m_parts.push_back({place.node, {}, number, place.count, 0, {}, place.mesh, false, charts.rest_vertices, {}});
+			for (const std::size_t indices : restOf(rest, charts.rest, place.count <= kShort))
+			{
+				rest["indices"] = indices;
+				Document& all = m_editor.items("meshes")[mesh]["primitives"];
+				all[at] = rest;
+				m_parts.push_back({place.node, {}, at, place.count, 0, {}, place.mesh, false, charts.rest_vertices, {}});
+				at = all.size();
+			}
 		}
 		for (std::size_t page = 0; page < charts.pages.size(); ++page)
 		{
@@ -335,6 +395,7 @@ private:
 	std::set<std::size_t> m_taken;                                           // materials that got a page, or stay as they are
 	std::map<std::pair<std::size_t, std::size_t>, Document> m_split;         // primitives with added vertices
 	std::map<std::pair<bool, std::vector<uint32_t>>, std::size_t> m_indices; // accessors
+	std::map<std::tuple<std::size_t, std::size_t, std::size_t>, std::size_t> m_runs; // accessors, by the one of all, first, count
 	std::vector<GltfPlace>& m_parts;
 };
 

@@ -293,17 +293,6 @@ constexpr std::array<double, 19> kLadder{0.08,  0.067, 0.057, 0.048,  0.04,  0.0
 constexpr double kShapeMore = 3.0;
 constexpr double kWorthIt = 0.9; // of the polygons; if simplification keeps more, it does not pay
 
-double rmseOf(const Compensation& curve, std::span<const double> sums, std::span<const double> occlusions)
-{
-	double squares = 0.0;
-	for (std::size_t i = 0; i < sums.size(); ++i)
-	{
-		const double difference = curve.at(sums[i]) - occlusions[i];
-		squares += difference * difference;
-	}
-	return std::sqrt(squares / static_cast<double>(sums.size()));
-}
-
 class Trials
 {
 public:
@@ -325,7 +314,40 @@ public:
 		return m_points.size();
 	}
 
+	// Without simplification. Then leaves out the points that this gets wrong: they lie in gaps that nothing sees, whose polygons
+	// are dropped.
+	DetailTrial whole()
+	{
+		std::vector<double> values;
+		const DetailTrial all = at(0.0, values);
+		const std::optional<Compensation> curve = m_masks ? std::nullopt : std::optional(fitCurve(values, m_occlusions));
+		std::size_t kept = 0;
+		for (std::size_t i = 0; i < values.size(); ++i)
+		{
+			if (std::fabs((curve ? curve->at(values[i]) : values[i]) - m_occlusions[i]) <= kMissed)
+			{
+				m_points[kept] = m_points[i];
+				m_occlusions[kept] = m_occlusions[i];
+				values[kept++] = values[i];
+			}
+		}
+		m_points.resize(kept);
+		m_occlusions.resize(kept);
+		values.resize(kept);
+		return trialOf(0.0, all.polygons, values);
+	}
+
 	DetailTrial at(double share) const
+	{
+		std::vector<double> values;
+		return at(share, values);
+	}
+
+private:
+	static constexpr double kMissed = 0.2;
+
+	// `values`: the sums of volumes at the points, or the occlusion by masks.
+	DetailTrial at(double share, std::vector<double>& values) const
 	{
 		OccluderSettings settings = m_settings;
 		settings.detail = share;
@@ -334,29 +356,53 @@ public:
 		set.distance_m = m_settings.distance_m;
 		set.exact_bounds = m_exact;
 		set.occluders = occludersOf(m_level, settings, m_run).occluders;
-		if (m_masks)
-		{
-			const double rmse = maskRmse(set);
-			return {share, set.occluders.polygons.size(), rmse, rmse};
-		}
-		const std::vector<double> sums = sumsAt(set, m_points, m_run);
-		return {share, set.occluders.polygons.size(), rmseOf(Compensation{}, sums, m_occlusions),
-				rmseOf(fitCurve(sums, m_occlusions), sums, m_occlusions)};
+		values = m_masks ? masksAt(set) : sumsAt(set, m_points, m_run);
+		return trialOf(share, set.occluders.polygons.size(), values);
 	}
 
-private:
-	double maskRmse(const VolumeSet& set) const
+	DetailTrial trialOf(double share, uint64_t polygons, std::span<const double> values) const
+	{
+		if (values.empty())
+		{
+			return {share, polygons, 0.0, 0.0};
+		}
+		if (m_masks)
+		{
+			const double rmse = rmseOf([](double occlusion) { return occlusion; }, values);
+			return {share, polygons, rmse, rmse};
+		}
+		const auto by = [](const Compensation& curve)
+		{
+			return [&curve](double sum)
+			{
+				return curve.at(sum);
+			};
+		};
+		return {share, polygons, rmseOf(by(Compensation{}), values), rmseOf(by(fitCurve(values, m_occlusions)), values)};
+	}
+
+	template <class Curve> double rmseOf(const Curve& curve, std::span<const double> values) const
+	{
+		double squares = 0.0;
+		for (std::size_t i = 0; i < values.size(); ++i)
+		{
+			const double difference = curve(values[i]) - m_occlusions[i];
+			squares += difference * difference;
+		}
+		return std::sqrt(squares / static_cast<double>(values.size()));
+	}
+
+	std::vector<double> masksAt(const VolumeSet& set) const
 	{
 		const VolumeEvaluator evaluator(set, m_run, true);
-		std::vector<double> squares(m_points.size());
+		std::vector<double> occlusions(m_points.size());
 		parallelFor(m_points.size(), m_run.threads,
 					[&](std::size_t i)
 					{
 						const ReferencePoint& point = m_points[i];
-						const double seen = evaluator.mask(point.position, point.normal, kMaskDirections).visibility;
-						squares[i] = (1.0 - m_occlusions[i] - seen) * (1.0 - m_occlusions[i] - seen);
+						occlusions[i] = 1.0 - evaluator.mask(point.position, point.normal, kMaskDirections).visibility;
 					});
-		return std::sqrt(sumOver(squares) / static_cast<double>(squares.size()));
+		return occlusions;
 	}
 
 	const Level& m_level;
@@ -441,15 +487,19 @@ DetailChoice chooseDetail(const Level& level, const Tracer& tracer, const Occlud
 						  const RunSettings& run)
 {
 	assert(detail.more > 0.0 && detail.rays >= 1);
-	const Trials trials(level, tracer, settings, detail, run);
+	Trials trials(level, tracer, settings, detail, run);
 	DetailChoice choice;
-	choice.points = trials.points();
-	if (choice.points == 0)
+	if (trials.points() == 0)
 	{
 		return choice; // nothing is visible
 	}
 	ProgressCounter progress(run.progress, "detail", 5);
-	const DetailTrial whole = trials.at(0.0);
+	const DetailTrial whole = trials.whole();
+	choice.points = trials.points();
+	if (choice.points == 0)
+	{
+		return choice;
+	}
 	choice.trials.push_back(whole);
 	progress.finishOne();
 	// Steps from `good` on are acceptable; those before `unknown` are too coarse.

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The table "What nook info expects" of docs/measurements/bake.md: compares nook info's estimates for a level's volumes and bake
-# with the actual cost: megabytes, seconds of processor time, megabytes of memory.
+# The table "What nook info expects" of docs/measurements/bake.md: compares nook info's estimates of the two commands that it names,
+# nook volumes --masks and nook bake at the suggested distance, with their actual cost: megabytes, of a bake those that it adds,
+# seconds of processor time, megabytes of memory.
 # usage: advice.sh PROGRAM [LEVEL]...
 set -eu
 nook=$1
@@ -41,16 +42,19 @@ for level in "$@"; do
 	name=$(basename "$level")
 	for asset in volumes bake; do
 		case $asset in
-		volumes) found=$(took "$folder/a.glb" "$nook" volumes "$level" --distance "$radius" -o "$folder/a.glb" --json "$folder/s.json") ;;
+		volumes)
+			found=$(took "$folder/a.glb" "$nook" volumes "$level" --masks --distance "$radius" -o "$folder/a.glb" --json "$folder/s.json")
+			;;
 		bake)
 			found=$(took "$folder/a.glb" "$nook" bake "$level" --radius "$radius" -o "$folder/a.glb" --json "$folder/s.json")
-			values=$(sed -n 's/^\t"vertices": \([0-9]*\),*$/\1/p' "$folder/s.json" | tail -n 1)
-			found="$(awk "BEGIN { print 4 * $values / 1e6 }") ${found#* }" # size of the attribute alone
+			added=$(sed -n 's/^\t"bytes_added": \([0-9]*\),*$/\1/p' "$folder/s.json")
+			found="$(awk "BEGIN { print $added / 1e6 }") ${found#* }"
 			;;
 		esac
 		# shellcheck disable=SC2086 # words
 		set_of=$(echo "$(field expected_${asset}_bytes) $(field expected_${asset}_seconds) $(field expected_${asset}_memory_bytes) $found" |
 			awk '{ print $1 / 1e6, $4, $2, $5, $3 / 1e6, $6 }')
+		[ "$asset" = bake ] || asset=masks
 		row "$name" "$asset" "$set_of"
 	done
 done

@@ -455,7 +455,7 @@ TEST_CASE("advice: coarse architecture takes volumes, dense meshes a bake", "[sc
 	{
 		const LoadedLevel loaded = loadLevel(name, {}, {});
 		const LevelFacts facts = levelFacts(loaded.level, 2);
-		return adviceFor(facts, volumesEstimate(loaded.level, facts), bakeEstimate(loaded.level, 256)).bake;
+		return adviceFor(facts, masksEstimate(loaded.level, facts, {2, {}, nullptr})).bake;
 	};
 	CHECK_FALSE(adviceOf("builtin:cornell"));
 	CHECK_FALSE(adviceOf("builtin:suburb"));
@@ -463,18 +463,54 @@ TEST_CASE("advice: coarse architecture takes volumes, dense meshes a bake", "[sc
 	CHECK(adviceOf("builtin:heightfield:200000"));
 }
 
+TEST_CASE("advice: masks take about the expected bytes, the same for any number of threads", "[scene]")
+{
+	for (const char* const name : {"builtin:cornell", "builtin:suburb", "builtin:cave:20000", "builtin:heightfield:20000"})
+	{
+		const LoadedLevel loaded = loadLevel(name, {}, {});
+		const LevelFacts facts = levelFacts(loaded.level, 1);
+		const AssetEstimate expected = masksEstimate(loaded.level, facts, {1, {}, nullptr});
+		const AssetEstimate again = masksEstimate(loaded.level, levelFacts(loaded.level, 2), {2, {}, nullptr});
+		CHECK(expected.bytes == again.bytes);
+		CHECK(expected.seconds == again.seconds);
+		CHECK(expected.memory_bytes == again.memory_bytes);
+		VolumeSettings settings;
+		settings.masks = true;
+		settings.distance_m = facts.radius_m;
+		settings.occluders.distance_m = facts.radius_m;
+		VolumeSet set = buildVolumes(loaded.level, settings, {2, {}, nullptr}).set;
+		clusterVolumes(set, kMaskClusters, {2, {}, nullptr});
+		const auto bytes = static_cast<double>(volumeGlb(set, {}, name, "", {2, {}, nullptr}).bytes.size());
+		INFO(name << ": " << expected.bytes << " expected, " << bytes);
+		CHECK(expected.bytes < 1.3 * bytes);
+		CHECK(bytes < 1.3 * expected.bytes);
+	}
+}
+
+TEST_CASE("advice: a bake takes four bytes per vertex, and again for the backs of sheets", "[scene]")
+{
+	Level level = emptyLevel();
+	addBox(level, {0.0, 0.0, 0.0}, {1.0, 1.0, 1.0});
+	const std::size_t box = level.triangles.size();
+	addQuad(level, {0.0, -1.0, 9.0}, {9.0, 0.0, 0.0}, {0.0, 0.0, -9.0});
+	level.material_list.push_back(level.material_list.front());
+	level.material_list.back().two_sided = true;
+	std::fill(level.materials.begin() + static_cast<std::ptrdiff_t>(box), level.materials.end(), uint32_t{1});
+	const AssetEstimate bake = bakeEstimate(level, levelFacts(level, 1));
+	CHECK(bake.bytes == 4.0 * static_cast<double>(level.positions.size() + 4));
+}
+
 TEST_CASE("advice: a bake of a level with large triangles is split", "[scene]")
 {
 	LevelFacts facts;
 	const AssetEstimate many{20e6, 1.0, 1e9};
 	const AssetEstimate few{1e6, 1.0, 1e9};
-	const AssetEstimate bake{3e6, 1.0, 1e9};
 	for (const auto& [share, split] : {std::pair{0.0, false}, {0.2, false}, {0.4, true}})
 	{
 		facts.coarse_share = share;
 		for (const AssetEstimate& volumes : {many, few})
 		{
-			const Advice advice = adviceFor(facts, volumes, bake);
+			const Advice advice = adviceFor(facts, volumes);
 			CHECK(advice.bake);
 			CHECK(advice.split == split);
 		}

@@ -2,6 +2,7 @@
 // nook info: a pattern, a tile, recipes, a level, volumes or an image, ours or someone else's → what it holds, measured again.
 #include "scene_options.h"
 
+#include "bake/bake.h"
 #include "core/error.h"
 #include "core/system.h"
 #include "format/tile_json.h"
@@ -182,7 +183,8 @@ template <class Options> bool describeOfLevels(const Options& options, const Run
 		const LoadedLevel loaded = loadLevel(options.file, options.load, settings);
 		checkRead(options.outputs, loaded.level.files);
 		const ProgressCounter stage(settings.progress, "advice");
-		describeLevel(loaded, settings.threads, facts);
+		const LevelFacts found = levelFacts(loaded.level, settings.threads);
+		describeLevel(loaded, found, masksEstimate(loaded.level, found, settings), bakeEstimate(loaded.level, found), facts);
 		describeBake(bakeRecordOf(options.file), facts);
 	}
 	else if (isImageName(options.file))

@@ -2,9 +2,12 @@
 #include "bake/bake.h"
 
 #include "bake/surface_samples.h"
+#include "core/costs.h"
 #include "core/math.h"
 #include "core/parallel.h"
+#include "core/system.h"
 #include "core/work_units.h"
+#include "scene/describe.h"
 #include "scene/load_parts.h"
 #include "scene/topology.h"
 
@@ -16,8 +19,10 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numeric>
+#include <system_error>
 #include <utility>
 
 namespace nook
@@ -391,6 +396,29 @@ BakedPicture bakedPicture(const Tracer& tracer, const BakedValues& baked, const 
 	};
 	parallelFor(static_cast<std::size_t>(gbuffer.height_px), run.threads, row);
 	return picture;
+}
+
+AssetEstimate bakeEstimate(const Level& level, const LevelFacts& facts)
+{
+	std::vector<uint8_t> sides(level.positions.size(), 1); // per vertex
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
+	{
+		for (int corner = 0; corner < 3 && level.material_list[level.materials[t]].two_sided; ++corner)
+		{
+			sides[level.triangles[t][corner]] = 2;
+		}
+	}
+	std::error_code none;
+	const std::uintmax_t size = level.files.empty() ? 0 : std::filesystem::file_size(nativePath(level.files.front()), none);
+	const auto values = static_cast<double>(unknownsOf(level, BakeSides::separate, facts.place_of).count);
+	AssetEstimate bake;
+	bake.bytes = cost::kBakeVertex_bytes * std::accumulate(sides.begin(), sides.end(), 0.0);
+	bake.seconds = (BakeSettings{}.rays * values + cost::kBakeCheck_rays) *
+				   (cost::kBakeRay_s + cost::kBakeNear_s * std::log2(1.0 + facts.near) +
+					cost::kBakeLeaves_s * std::log2(1.0 + facts.near_cover));
+	bake.memory_bytes = cost::kLeast_memory + cost::kBakeTriangle_memory * static_cast<double>(level.triangles.size()) +
+						cost::kBakeValue_memory * values + cost::kBakeFile_memory * (none ? 0.0 : static_cast<double>(size));
+	return bake;
 }
 
 } // namespace nook

@@ -21,6 +21,9 @@
 namespace nook
 {
 
+struct AssetEstimate;
+struct LevelFacts;
+
 // Rays per point if several points share a vertex's rays: enough for Embree's streams and for a standard error. For a fixed number
 // of rays, more points with fewer rays each give a better fit.
 inline constexpr int kRaysOfPoint = 32;
@@ -135,5 +138,8 @@ BakedPicture bakedPicture(const Tracer& tracer, const BakedValues& baked, const 
 
 // Where `fixed` shows the same surface as `gbuffer` (by that rule), copies its depth and normal exactly; returns 1 for such pixels.
 std::vector<uint8_t> alignStatic(GBuffer& fixed, const GBuffer& gbuffer);
+
+// Expects what `nook bake` adds to a level at the suggested distance with 256 rays per vertex, its default.
+AssetEstimate bakeEstimate(const Level& level, const LevelFacts& facts);
 
 } // namespace nook

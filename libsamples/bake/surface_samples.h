@@ -119,8 +119,9 @@ struct Unknowns
 std::vector<glm::vec3> vertexNormals(const Level& level);
 
 // Vertices share a value if their positions are equal and their normals differ by less than 2.6 degrees. Unused ones have values
-// too. BakeSides::separate: those of two-sided materials have two; the backs come last, in the order of the fronts.
-Unknowns unknownsOf(const Level& level, BakeSides sides = BakeSides::mean);
+// too. BakeSides::separate: those of two-sided materials have two; the backs come last, in the order of the fronts. `places`: those
+// of weldPositions(), which are found if it is empty.
+Unknowns unknownsOf(const Level& level, BakeSides sides = BakeSides::mean, std::vector<uint32_t> places = {});
 
 // Alternates fitting and subdivision until no triangle's error exceeds settings.max_error. Requires max_error > 0 and
 // BakeFit::surface.

@@ -8,6 +8,7 @@
 
 #include "core/lists.h"
 #include "core/random.h"
+#include "scene/topology.h"
 
 #include <glm/geometric.hpp>
 
@@ -16,7 +17,7 @@
 #include <cassert>
 #include <cmath>
 #include <numeric>
-#include <tuple>
+#include <utility>
 
 namespace nook
 {
@@ -24,12 +25,12 @@ namespace nook
 namespace
 {
 
+constexpr uint32_t kNone = ~0U;
 constexpr float kSameNormal = 0.999F; // cosine; 2.6° changes the direction-dependent part of visibility by about sin 2.6° = 0.045
 
 // Adds a second value for vertices of two-sided triangles.
 void addBacks(const Level& level, Unknowns& unknowns)
 {
-	constexpr uint32_t kNone = ~0U;
 	std::vector<uint32_t> back_of(unknowns.count, kNone);
 	for (std::size_t t = 0; t < level.triangles.size(); ++t)
 	{
@@ -320,43 +321,27 @@ std::vector<glm::vec3> vertexNormals(const Level& level)
 	return normals;
 }
 
-Unknowns unknownsOf(const Level& level, BakeSides sides)
+Unknowns unknownsOf(const Level& level, BakeSides sides, std::vector<uint32_t> places)
 {
 	const std::vector<glm::vec3> normals = vertexNormals(level);
-	std::vector<uint32_t> order(level.positions.size());
-	std::iota(order.begin(), order.end(), 0U);
-	const auto key = [&](uint32_t v)
-	{
-		const glm::dvec3 p = level.positions[v];
-		return std::tuple(p.x, p.y, p.z, v);
-	};
-	std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+	const std::size_t count = level.positions.size();
 	// For each vertex the first one that it shares a value with; values are then numbered in vertex order.
-	std::vector<uint32_t> first_of(order.size());
+	std::vector<uint32_t> first_of(count);
+	std::vector<uint32_t> next(count, kNone); // the next vertex with a value of its own at the same place
 	Unknowns unknowns;
-	unknowns.place_of_vertex.resize(order.size());
-	std::vector<uint32_t> firsts;
-	const auto addPlace = [&](std::span<const uint32_t> vertices)
+	unknowns.place_of_vertex = places.empty() ? weldPositions(level.positions, 1) : std::move(places);
+	for (uint32_t v = 0; v < count; ++v)
 	{
-		firsts.clear();
-		for (const uint32_t v : vertices)
+		uint32_t first = unknowns.place_of_vertex[v];
+		while (first != v && normals[v] != normals[first] && !(glm::dot(normals[v], normals[first]) > kSameNormal))
 		{
-			const auto found = std::find_if(
-				firsts.begin(), firsts.end(),
-				[&](uint32_t other) { return normals[v] == normals[other] || glm::dot(normals[v], normals[other]) > kSameNormal; });
-			first_of[v] = found == firsts.end() ? v : *found;
-			if (found == firsts.end())
-			{
-				firsts.push_back(v);
-			}
-			unknowns.place_of_vertex[v] = vertices.front();
+			next[first] = std::min(next[first], v);
+			first = next[first];
 		}
-	};
-	eachRun(
-		std::span<const uint32_t>(order), [&](uint32_t a, uint32_t b) { return level.positions[a] == level.positions[b]; },
-		addPlace);
-	unknowns.of_vertex.resize(order.size());
-	for (std::size_t v = 0; v < order.size(); ++v) // the first one precedes those that share its value
+		first_of[v] = first;
+	}
+	unknowns.of_vertex.resize(count);
+	for (std::size_t v = 0; v < count; ++v) // the first one precedes those that share its value
 	{
 		unknowns.of_vertex[v] = first_of[v] == v ? static_cast<uint32_t>(unknowns.count++) : unknowns.of_vertex[first_of[v]];
 	}

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/describe.h"
 
-#include "core/costs.h"
 #include "core/lists.h"
 #include "core/math.h"
+#include "core/random.h"
 #include "core/text.h"
 #include "core/words.h"
 #include "scene/gbuffer.h"
@@ -143,9 +143,9 @@ std::string megabytes(double bytes)
 	return roundedText(bytes / 1e6, 3) + " MB";
 }
 
-void addEstimate(const std::string& name, const AssetEstimate& estimate, Facts& facts)
+void addEstimate(const std::string& command, const std::string& name, const AssetEstimate& estimate, Facts& facts)
 {
-	facts.line("  nook " + name + ": about " + megabytes(estimate.bytes) + ", " + roundedText(estimate.seconds, 2) +
+	facts.line("  " + command + ": about " + megabytes(estimate.bytes) + ", " + roundedText(estimate.seconds, 2) +
 			   " s of a core, " + megabytes(estimate.memory_bytes) + " of memory");
 	facts.number("expected_" + name + "_bytes", std::floor(estimate.bytes));
 	facts.number("expected_" + name + "_seconds", estimate.seconds);
@@ -153,13 +153,9 @@ void addEstimate(const std::string& name, const AssetEstimate& estimate, Facts& 
 }
 
 // The asset that suits the level, with estimates of its cost.
-void addAdvice(const Level& level, int threads, Facts& facts)
+void addAdvice(const LevelFacts& found, const AssetEstimate& masks, const AssetEstimate& bake, Facts& facts)
 {
-	constexpr int kRays = 256; // the default of nook bake
-	const LevelFacts found = levelFacts(level, threads);
-	const AssetEstimate volumes = volumesEstimate(level, found);
-	const AssetEstimate bake = bakeEstimate(level, kRays);
-	const Advice advice = adviceFor(found, volumes, bake);
+	const Advice advice = adviceFor(found, masks);
 	const std::string suits = advice.bake ? "bake" : "masks"; // masks err less than sums on every level measured
 	const std::string why =
 		advice.why + std::string(advice.split ? "; with --max-error, since much of the surface lies in large triangles" : "");
@@ -182,8 +178,8 @@ void addAdvice(const Level& level, int threads, Facts& facts)
 	facts.number("suggested_distance_m", found.radius_m);
 	facts.line("distance: " + roundedText(found.radius_m, 3) + " m suggested, for rays and for volumes");
 	facts.line("expected:");
-	addEstimate("volumes", volumes, facts);
-	addEstimate("bake", bake, facts);
+	addEstimate("nook volumes --masks", "volumes", masks, facts);
+	addEstimate("nook bake", "bake", bake, facts);
 	facts.text("suits", suits);
 	facts.text("why", why);
 	facts.line("suits: " + suits + ", since " + why);
@@ -303,9 +299,24 @@ void addNotes(const Image& image, Facts& facts)
 	facts.items("notes", std::move(items));
 }
 
-constexpr double kMemoryATriangle = 650.0; // for either asset
-constexpr double kMemoryAtLeast = 20e6;
-constexpr double kOnePlane = 1e-4; // sine of the angle up to which volumes merge neighbours
+constexpr double kOnePlane = 1e-4; // sine of the angle up to which neighbours are a patch
+
+constexpr double kOffPlane = 1e-4; // of the distance: how far off its plane neighbours become parts of a volume
+
+// Whether the smaller one of an edge's two triangles lies in the plane of the larger one; a and b are twice their areas.
+bool areInPlane(const Level& level, std::span<const HalfEdge> edge, glm::dvec3 a, glm::dvec3 b, double flat_m)
+{
+	const std::size_t larger_side = glm::dot(a, a) >= glm::dot(b, b) ? 0 : 1;
+	const glm::dvec3 across = larger_side == 0 ? a : b;
+	const glm::uvec3 larger = level.triangles[edge[larger_side].triangle()];
+	const glm::uvec3 smaller = level.triangles[edge[1 - larger_side].triangle()];
+	double most = 0.0;
+	for (int corner = 0; corner < 3; ++corner)
+	{
+		most = std::max(most, std::fabs(glm::dot(level.positions[smaller[corner]] - level.positions[larger.x], across)));
+	}
+	return most <= flat_m * glm::length(across);
+}
 
 void findComponents(const Level& level, const std::vector<uint32_t>& place, LevelFacts& facts, int threads)
 {
@@ -314,6 +325,7 @@ void findComponents(const Level& level, const std::vector<uint32_t>& place, Leve
 						  place.size(), threads);
 	Groups components(count);
 	Groups patches(count);
+	Groups flats(count);
 	std::vector<uint8_t> open(count, 0);
 	edges.each(0, edges.vertexCount(),
 			   [&](std::span<const HalfEdge> edge)
@@ -326,10 +338,17 @@ void findComponents(const Level& level, const std::vector<uint32_t>& place, Leve
 				   }
 				   const glm::dvec3 a = twiceAreaOf(level, edge.front().triangle());
 				   const glm::dvec3 b = twiceAreaOf(level, edge.back().triangle());
-				   const double lengths = glm::length(a) * glm::length(b);
-				   if (pair && lengths > 0.0 && glm::dot(a, b) > 0.0 && glm::length(glm::cross(a, b)) <= kOnePlane * lengths)
+				   if (!pair || !(glm::dot(a, b) > 0.0))
+				   {
+					   return;
+				   }
+				   if (glm::length(glm::cross(a, b)) <= kOnePlane * glm::length(a) * glm::length(b))
 				   {
 					   patches.join(edge[0].triangle(), edge[1].triangle());
+				   }
+				   if (areInPlane(level, edge, a, b, kOffPlane * facts.radius_m))
+				   {
+					   flats.join(edge[0].triangle(), edge[1].triangle());
 				   }
 			   });
 	std::vector<uint8_t> open_component(count, 0);
@@ -341,15 +360,78 @@ void findComponents(const Level& level, const std::vector<uint32_t>& place, Leve
 	{
 		const uint32_t root = components.rootOf(static_cast<uint32_t>(t));
 		facts.components += root == t ? 1U : 0U;
+		facts.patches += patches.rootOf(static_cast<uint32_t>(t)) == t ? 1U : 0U;
 		facts.closed += root == t && open_component[t] == 0 ? 1U : 0U;
 		facts.open_triangles += open_component[root];
-		facts.patches += patches.rootOf(static_cast<uint32_t>(t)) == t ? 1U : 0U;
+		facts.sheets += level.material_list[level.materials[t]].two_sided ? 1U : 0U;
 	}
+	facts.flat_of = std::move(flats).roots();
+}
+
+// A few hundred points of the surface, half of them evenly over the triangles and half by area, as a bake has them.
+std::vector<glm::dvec3> somePoints(const Level& level, std::span<const double> areas)
+{
+	constexpr std::size_t kHalfPoints = 128;
+	std::vector<glm::dvec3> points;
+	const auto add = [&](std::size_t triangle)
+	{
+		// M. Roberts' sequence R2.
+		const auto turn = static_cast<double>(points.size() + 1);
+		const double b = fraction(0.5 + 0.7548776662466927 * turn);
+		const double c = fraction(0.5 + 0.5698402909980532 * turn);
+		const bool beyond = b + c > 1.0;
+		const glm::dvec2 at = beyond ? glm::dvec2(1.0 - b, 1.0 - c) : glm::dvec2(b, c);
+		const glm::uvec3 corner = level.triangles[triangle];
+		points.push_back((1.0 - at.x - at.y) * level.positions[corner.x] + at.x * level.positions[corner.y] +
+						 at.y * level.positions[corner.z]);
+	};
+	for (std::size_t i = 0; i < kHalfPoints; ++i)
+	{
+		add((2 * i + 1) * areas.size() / (2 * kHalfPoints));
+	}
+	const double step_m2 = sumOver(std::vector<double>(areas.begin(), areas.end())) / kHalfPoints;
+	double passed_m2 = 0.5 * step_m2;
+	for (std::size_t t = 0; t < areas.size() && step_m2 > 0.0; passed_m2 -= areas[t], ++t)
+	{
+		for (; passed_m2 < areas[t] && points.size() < 2 * kHalfPoints; passed_m2 += step_m2)
+		{
+			add(t);
+		}
+	}
+	return points;
+}
+
+void findNear(const Level& level, std::span<const double> areas, LevelFacts& facts)
+{
+	std::vector<glm::dvec3> points = somePoints(level, areas);
+	const auto is_before = [](const glm::dvec3& a, const glm::dvec3& b)
+	{
+		return a.x < b.x;
+	};
+	std::sort(points.begin(), points.end(), is_before);
+	const double disc_m2 = kPi * facts.radius_m * facts.radius_m;
+	for (std::size_t t = 0; t < areas.size(); ++t)
+	{
+		const Bounds box = boundsOf(level, t);
+		const glm::dvec3 least = box.least - facts.radius_m;
+		const glm::dvec3 most = box.most + facts.radius_m;
+		const double discs = level.material_list[level.materials[t]].alpha_mode == AlphaMode::opaque ? 0.0 : areas[t] / disc_m2;
+		for (auto at = std::lower_bound(points.begin(), points.end(), least, is_before); at != points.end() && at->x <= most.x;
+			 ++at)
+		{
+			const bool is_near = at->y >= least.y && at->y <= most.y && at->z >= least.z && at->z <= most.z;
+			facts.near += is_near ? 1.0 : 0.0;
+			facts.near_cover += is_near ? std::min(discs, 1.0) : 0.0;
+		}
+	}
+	facts.near /= static_cast<double>(points.size());
+	facts.near_cover /= static_cast<double>(points.size());
 }
 
 void findSizes(const Level& level, LevelFacts& facts)
 {
 	std::vector<double> areas = areasOf(level);
+	findNear(level, areas, facts);
 	std::sort(areas.begin(), areas.end());
 	const double total = std::accumulate(areas.begin(), areas.end(), 0.0);
 	const double coarse_m2 = 0.25 * facts.radius_m * facts.radius_m;
@@ -388,7 +470,8 @@ void describeImage(const Image& image, Facts& facts)
 	addNotes(image, facts);
 }
 
-void describeLevel(const LoadedLevel& loaded, int threads, Facts& facts)
+void describeLevel(const LoadedLevel& loaded, const LevelFacts& found, const AssetEstimate& masks, const AssetEstimate& bake,
+				   Facts& facts)
 {
 	const Level& level = loaded.level;
 	facts.text("kind", "level");
@@ -419,7 +502,7 @@ void describeLevel(const LoadedLevel& loaded, int threads, Facts& facts)
 	}
 	const std::string count = items.empty() ? "none" : std::to_string(items.size());
 	facts.items("findings", std::move(items));
-	addAdvice(level, threads, facts);
+	addAdvice(found, masks, bake, facts);
 	facts.line("findings: " + count + lines);
 }
 
@@ -452,7 +535,8 @@ LevelFacts levelFacts(const Level& level, int threads)
 	const Bounds bounds = boundsOf(level);
 	facts.diagonal_m = glm::length(bounds.most - bounds.least);
 	facts.radius_m = suggestedRadius(level);
-	const std::vector<uint32_t> place = weldPositions(level.positions, threads);
+	facts.place_of = weldPositions(level.positions, threads);
+	const std::vector<uint32_t>& place = facts.place_of;
 	for (std::size_t v = 0; v < place.size(); ++v)
 	{
 		facts.places += place[v] == v ? 1U : 0U;
@@ -463,33 +547,17 @@ LevelFacts levelFacts(const Level& level, int threads)
 	return facts;
 }
 
-// Constants here and above are geometric means over the levels of docs/measurements/bake.md, "What nook info expects".
-AssetEstimate volumesEstimate(const Level& level, const LevelFacts& facts)
+Advice adviceFor(const LevelFacts& facts, const AssetEstimate& masks)
 {
-	constexpr double kVolumesAPatch = 1.0;
-	constexpr double kBytesAVolume = 52.0;
-	const auto triangles = static_cast<double>(level.triangles.size());
-	return {kBytesAVolume * kVolumesAPatch * static_cast<double>(facts.patches), cost::kVolume_s * triangles,
-			kMemoryAtLeast + kMemoryATriangle * triangles};
-}
-
-AssetEstimate bakeEstimate(const Level& level, int rays)
-{
-	const auto vertices = static_cast<double>(level.positions.size());
-	return {4.0 * vertices, cost::kRay_s * rays * vertices,
-			kMemoryAtLeast + kMemoryATriangle * static_cast<double>(level.triangles.size())};
-}
-
-Advice adviceFor(const LevelFacts& facts, const AssetEstimate& volumes, const AssetEstimate& bake)
-{
-	constexpr double kSmoothMesh = 20.0; // edges per patch: caves and terrain have 24 and 25, Sponza 15, other architecture 4 to 5
+	constexpr double kSmoothMesh =
+		1.54; // patches per vertex: caves and terrain have 1.8 to 1.9, Sponza 1.1, other architecture 0.3 to 0.4
 	constexpr double kMuch_bytes = 16e6; // size of volumes that took minutes per picture
 	const bool split = facts.coarse_share >= 0.25;
-	if (volumes.bytes > kMuch_bytes)
+	if (masks.bytes > kMuch_bytes)
 	{
 		return {true, "volumes of so many polygons take minutes a picture and tens of megabytes", split};
 	}
-	if (volumes.bytes > kSmoothMesh * bake.bytes)
+	if (static_cast<double>(facts.patches) > kSmoothMesh * static_cast<double>(facts.places + facts.sharing))
 	{
 		return {true, "each facet of its smooth surface would be a volume, while vertices are few", split};
 	}

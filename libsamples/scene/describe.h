@@ -8,13 +8,12 @@
 #include "scene/load.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace nook
 {
-
-// With its diagnosis, and the asset that suits it.
-void describeLevel(const LoadedLevel& loaded, int threads, Facts& facts);
 
 // Whether a name ends as an image does: .exr .png .jpg .jpeg .tif .tiff .hdr .tga .bmp, in any case.
 bool isImageName(const std::string& path);
@@ -37,18 +36,22 @@ struct LevelFacts
 	double coarse_share = 0.0;  // area fraction of triangles larger than a square of half the suggested radius
 	double radius_m = 0.0;      // suggested
 	double diagonal_m = 0.0;
+	std::size_t sheets = 0;         // triangles of two-sided materials
+	double near = 0.0;              // triangles within the suggested distance of a point of the surface: their mean number
+	double near_cover = 0.0;        // area of the alpha-tested ones among them, in discs of that radius
+	std::vector<uint32_t> place_of; // per vertex: the first one at its position
+	std::vector<uint32_t> flat_of;  // per triangle: the lowest one of the flat piece of surface that is one volume or a few
 };
 LevelFacts levelFacts(const Level& level, int threads);
 
-// Approximate cost of an asset. Fitted to measurements (docs/measurements/bake.md has them and the fit's errors).
+// Approximate cost of an asset at the suggested distance: masksEstimate() and bakeEstimate(). docs/measurements/bake.md compares
+// them with measurements.
 struct AssetEstimate
 {
 	double bytes = 0.0;
 	double seconds = 0.0; // on one core of this speed
 	double memory_bytes = 0.0;
 };
-AssetEstimate volumesEstimate(const Level& level, const LevelFacts& facts);
-AssetEstimate bakeEstimate(const Level& level, int rays);
 
 struct Advice
 {
@@ -56,7 +59,11 @@ struct Advice
 	const char* why = ""; // a clause, "since …"
 	bool split = false;   // a bake needs --max-error, since a quarter of the surface lies in large triangles
 };
-Advice adviceFor(const LevelFacts& facts, const AssetEstimate& volumes, const AssetEstimate& bake);
+Advice adviceFor(const LevelFacts& facts, const AssetEstimate& masks);
+
+// With its diagnosis, and the asset that suits it.
+void describeLevel(const LoadedLevel& loaded, const LevelFacts& found, const AssetEstimate& masks, const AssetEstimate& bake,
+				   Facts& facts);
 
 // Whether the level's size is plausible in metres.
 std::string scaleText(const LevelFacts& facts);

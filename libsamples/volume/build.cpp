@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volume/build.h"
 
+#include "core/costs.h"
 #include "core/error.h"
 #include "core/lists.h"
 #include "core/parallel.h"
+#include "core/random.h"
 #include "core/text.h"
 #include "core/work_units.h"
+#include "scene/describe.h"
 #include "scene/reference.h"
 #include "volume/evaluate.h"
 
@@ -13,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <memory>
@@ -414,6 +418,54 @@ private:
 	std::vector<double> m_occlusions;
 };
 
+bool isAlphaTested(const Level& level, std::size_t triangle)
+{
+	return level.material_list[level.materials[triangle]].alpha_mode != AlphaMode::opaque;
+}
+
+// Per triangle the flat pieces that it stands for with its own one, 0 outside the sample. Of each size, one piece of every so many
+// is in the sample, the same share of leaves as of walls, but a few at least; all of a small level.
+std::vector<double> sampleOf(const Level& level, std::span<const uint32_t> flat_of)
+{
+	constexpr std::size_t kPieces = 2048; // polygons to about 5 %, in a few hundredths of a second
+	constexpr std::size_t kLeaves = 192;  // whose gaps take a tenth of a second
+	constexpr std::size_t kFew = 8;       // of each size, fewer if they have more triangles together than
+	constexpr std::size_t kFewTriangles = 8192;
+	std::vector<uint32_t> sizes(flat_of.size(), 0);
+	for (const uint32_t piece : flat_of)
+	{
+		sizes[piece] += 1;
+	}
+	std::array<std::vector<std::size_t>, 33> by_size; // by the width of the number
+	std::size_t pieces = 0;
+	std::size_t leaves = 0;
+	for (std::size_t t = 0; t < sizes.size(); ++t)
+	{
+		by_size[static_cast<std::size_t>(std::bit_width(sizes[t]))].push_back(t);
+		pieces += sizes[t] > 0 ? 1U : 0U;
+		leaves += sizes[t] > 0 && isAlphaTested(level, t) ? 1U : 0U;
+	}
+	const std::size_t step = std::max({std::size_t{1}, pieces / kPieces, leaves / kLeaves});
+	std::vector<double> weights(flat_of.size(), 0.0);
+	for (std::size_t width = 1; width < by_size.size(); ++width)
+	{
+		const std::vector<std::size_t>& of_size = by_size[width];
+		const std::size_t few = std::clamp<std::size_t>(kFewTriangles >> (width - 1), 1, kFew);
+		const std::size_t every = std::clamp<std::size_t>(of_size.size() / few, 1, step);
+		const std::size_t chosen = (of_size.size() + every - 1) / every;
+		for (std::size_t first = 0; first < of_size.size(); first += every)
+		{
+			const std::size_t at = std::min(first + mixBits(first) % every, of_size.size() - 1);
+			weights[of_size[at]] = static_cast<double>(of_size.size()) / static_cast<double>(chosen);
+		}
+	}
+	for (std::size_t t = 0; t < flat_of.size(); ++t)
+	{
+		weights[t] = weights[flat_of[t]];
+	}
+	return weights;
+}
+
 } // namespace
 
 // Upper estimate; nook_bench_drop prints it next to the measured peak.
@@ -524,6 +576,43 @@ DetailChoice chooseDetail(const Level& level, const Tracer& tracer, const Occlud
 		choice.detail = best.detail;
 	}
 	return choice;
+}
+
+AssetEstimate masksEstimate(const Level& level, const LevelFacts& facts, const RunSettings& run)
+{
+	std::vector<double> weights = sampleOf(level, facts.flat_of);
+	const LevelPart part =
+		partOf(level, mapped(weights, [](double weight) { return static_cast<uint8_t>(weight > 0.0 ? 1 : 0); }), run.threads);
+	std::erase(weights, 0.0); // now of the part's triangles
+	OccluderSettings settings;
+	settings.distance_m = facts.radius_m;
+	settings.gap_halvings = gapHalvings(level);
+	Occluders found;
+	try
+	{
+		found = occludersOf(part.level, settings, silent(run)).occluders;
+	}
+	catch (const Error&) // no surface of the sample blocks light
+	{
+	}
+	const auto triangles = static_cast<double>(level.triangles.size());
+	double polygons = 0.0;
+	double corners = 0.0;
+	double leaves = 0.0;
+	for (const Occluder& polygon : found.polygons)
+	{
+		const double weight = weights[polygon.triangle];
+		polygons += weight;
+		corners += weight * polygon.corner_count;
+		leaves += isAlphaTested(part.level, polygon.triangle) ? weight : 0.0;
+	}
+	AssetEstimate masks;
+	masks.bytes =
+		cost::kMaskFile_bytes + cost::kMaskKept * (cost::kMaskCorner_bytes * corners + cost::kMaskPolygon_bytes * polygons);
+	masks.seconds = cost::kStart_s + (level.cameras.empty() ? cost::kMaskCameras_s : 0.0) + cost::kMaskTriangle_s * triangles +
+					cost::kMaskSheet_s * static_cast<double>(facts.sheets) + cost::kMaskLeaf_s * leaves;
+	masks.memory_bytes = cost::kLeast_memory + cost::kMaskTriangle_memory * triangles + cost::kMaskPolygon_memory * polygons;
+	return masks;
 }
 
 } // namespace nook

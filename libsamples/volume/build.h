@@ -24,6 +24,9 @@
 namespace nook
 {
 
+struct AssetEstimate;
+struct LevelFacts;
+
 // Chooses how far a level's surfaces may be simplified before volumes are made (OccluderSettings::detail), for a given increase of
 // the error.
 
@@ -106,5 +109,9 @@ void describeBuilt(const BuiltVolumes& built, const VolumeFile& file, const Volu
 
 // The volumes of a file.
 void describeVolumes(const VolumeSet& volumes, const VolumeFileFacts& file, Facts& to);
+
+// Expects what `nook volumes --masks` makes of a level at the suggested distance, from the polygons of a sample of its flat pieces.
+// The same for any number of threads.
+AssetEstimate masksEstimate(const Level& level, const LevelFacts& facts, const RunSettings& run);
 
 } // namespace nook

@@ -431,10 +431,9 @@ void writePlan(const Plan& plan, const std::string& folder)
 	const fs::path file = nativePath(folder) / kPlanFile;
 	if (fs::exists(file))
 	{
-		if (const Plan old = readPlan(readFile(file.string()), file.string()); old.title != plan.title)
-		{
-			refuse(folder + ": found the plan of '" + old.title + "', expected that of '" + plan.title + "', or a new folder");
-		}
+		const Plan old = readPlan(readFile(file.string()), file.string());
+		refuseIf(old.title != plan.title,
+				 folder + ": found the plan of '" + old.title + "', expected that of '" + plan.title + "', or a new folder");
 	}
 	std::error_code failed;
 	fs::create_directories(nativePath(folder), failed);

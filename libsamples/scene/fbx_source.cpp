@@ -407,11 +407,9 @@ private:
 				corners += indices->values.size() == 1 ? indices->values.front().count : indices->values.size();
 			}
 		}
-		if (corners > 3 * uint64_t{kMaxTriangles})
-		{
-			refuseInput(m_file.path, std::to_string(corners) + " corners of polygons, counting every instance",
-						"at most " + std::to_string(3 * kMaxTriangles));
-		}
+		refuseInputIf(corners > 3 * uint64_t{kMaxTriangles}, m_file.path,
+					  std::to_string(corners) + " corners of polygons, counting every instance",
+					  "at most " + std::to_string(3 * kMaxTriangles));
 	}
 
 	void send(const Instance& instance)

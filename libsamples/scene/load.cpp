@@ -141,10 +141,8 @@ std::vector<uint32_t> cleanAgain(Level& again, const std::string& name, const Lo
 	std::vector<uint32_t> before;
 	ignoreParts(again, settings);
 	cleanLevel(again, silent(run), &before);
-	if (again.positions != level.positions) // triangles may be flipped by now (bake/bake.h)
-	{
-		refuseInput(name, "other vertices when reading it again", "an unchanged file");
-	}
+	// Triangles may be flipped by now (bake/bake.h).
+	refuseInputIf(again.positions != level.positions, name, "other vertices when reading it again", "an unchanged file");
 	return before;
 }
 

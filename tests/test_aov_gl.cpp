@@ -197,47 +197,6 @@ TEST_CASE("aov on OpenGL: far from the origin as at it", "[aov_gl]")
 	CHECK(difference.most <= 1e-3);
 }
 
-TEST_CASE("aov: bounds of depth hold what a cluster may darken, and not much more", "[aov_gl]")
-{
-	const VolumeSet set = volumesOf(builtinLevel("courtyard"), 1.0, 64);
-	const PackedVolumes packed = packVolumes(set, {}, {});
-	for (const NamedProjection& projection : projections(4.0 / 3.0))
-	{
-		GBuffer gbuffer;
-		gbuffer.width_px = 4;
-		gbuffer.height_px = 3;
-		gbuffer.view = {someView(), projection.matrix};
-		nook_volumes::Camera camera = cameraOf(gbuffer, 1);
-		std::copy_n(&projection.matrix[0][0], 16, camera.projection);
-		camera.zero_to_one = projection.clip == ClipRange::zero_to_one;
-		nook_volumes::Frame frame;
-		REQUIRE(frame.set(headerOf(set, true), camera) == nullptr);
-		double narrowest = 1.0;
-		for (std::size_t i = 0; i < packed.clusters.size(); i += 7)
-		{
-			double least = 0.0;
-			double most = 0.0;
-			frame.depthBounds(packed.clusters[i], least, most);
-			narrowest = std::min(narrowest, most - least);
-			const VolumeCluster& cluster = set.clusters[i];
-			for (int corner = 0; corner < 27; ++corner)
-			{
-				const glm::dvec3 share(0.5 * (corner % 3), 0.5 * (corner / 3 % 3), 0.5 * (corner / 9));
-				const glm::dvec3 at = cluster.least + share * (cluster.most - cluster.least);
-				const glm::dvec4 clip = projection.matrix * someView() * glm::dvec4(at, 1.0);
-				if (clip.w > 0.0)
-				{
-					const double z = clip.z / clip.w;
-					const double device = std::clamp(camera.zero_to_one ? z : 0.5 * z + 0.5, 0.0, 1.0);
-					INFO(projection.name << ": " << device << " in " << least << " to " << most);
-					CHECK((device >= least && device <= most));
-				}
-			}
-		}
-		CHECK(narrowest < 0.1);
-	}
-}
-
 TEST_CASE("aov on OpenGL: volumes that are cut, by both layouts and both kinds of buffers, and masks of them", "[aov_gl][trim]")
 {
 	const Level level = builtinLevel("cornell");

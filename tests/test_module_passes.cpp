@@ -14,7 +14,6 @@
 #include "methods/method_table.h"
 #include "methods/passes.h"
 #include "pattern/recipe.h"
-#include "pattern/tile.h"
 #include "shade/gl_context.h"
 #include "shade/shade.h"
 
@@ -273,24 +272,7 @@ TEST_CASE("module: nothing of bent normals is in it without --bent, and its code
 	CHECK(with.find("float nookSlices(") == std::string::npos);
 }
 
-TEST_CASE("module: passes drawn as the module's head says make the picture of nook shade", "[emit]")
-{
-	const GBuffer gbuffer = builtinView("courtyard", 128, 72);
-	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
-	{
-		const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
-		for (const PassCase& one : passCases())
-		{
-			const ModuleSettings settings = moduleOf(one, target);
-			const std::vector<float> cpu = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility;
-			const std::vector<float> gl = drawn(gbuffer, settings);
-			CAPTURE(one.name, static_cast<int>(target), context.renderer());
-			checkSamePicture(cpu, gl);
-		}
-	}
-}
-
-TEST_CASE("module: whole shaders draw the picture of nook shade", "[emit]")
+TEST_CASE("module: passes drawn as the module's head says and whole shaders make the picture of nook shade", "[emit]")
 {
 	const GBuffer gbuffer = builtinView("courtyard", 128, 72);
 	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
@@ -299,11 +281,17 @@ TEST_CASE("module: whole shaders draw the picture of nook shade", "[emit]")
 		for (const PassCase& one : passCases())
 		{
 			ModuleSettings settings = moduleOf(one, target);
-			settings.main = ModuleMain::fragment;
-			settings.textures = target == GlslTarget::gl430 ? ModuleTextures::macros : ModuleTextures::fixed;
 			const std::vector<float> cpu = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility;
+			const std::vector<float> gl = drawn(gbuffer, settings);
 			CAPTURE(one.name, static_cast<int>(target), context.renderer());
-			checkSamePicture(cpu, drawn(gbuffer, settings));
+			checkSamePicture(cpu, gl);
+			ModuleSettings whole = settings;
+			whole.main = ModuleMain::fragment;
+			whole.textures = target == GlslTarget::gl430 ? ModuleTextures::macros : ModuleTextures::fixed;
+			checkSamePicture(cpu, drawn(gbuffer, whole));
+			settings.float_block = true; // the same to the bit
+			CHECK(drawn(gbuffer, settings) == gl);
+			CHECK(moduleGlsl(settings, contextOf("nook emit")).find("\tivec2 first;") == std::string::npos);
 		}
 	}
 }
@@ -480,24 +468,6 @@ TEST_CASE("module: slices of a tile over frames draw those of nook shade", "[emi
 			samples.variant = variantOfFrame(tile, frame);
 			CAPTURE(frame, static_cast<int>(target), context.renderer());
 			checkSamePicture(shadeOnCpu(gbuffer, samples, settings.shade, {2, {}}).visibility, drawn(gbuffer, settings, 1, frame));
-		}
-	}
-}
-
-TEST_CASE("module: a block of floats alone draws the same picture to the bit", "[emit]")
-{
-	const GBuffer gbuffer = builtinView("courtyard", 128, 72);
-	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
-	{
-		const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
-		for (const PassCase& one : passCases())
-		{
-			ModuleSettings settings = moduleOf(one, target);
-			const std::vector<float> mixed = drawn(gbuffer, settings);
-			settings.float_block = true;
-			CAPTURE(one.name, static_cast<int>(target), context.renderer());
-			CHECK(drawn(gbuffer, settings) == mixed);
-			CHECK(moduleGlsl(settings, contextOf("nook emit")).find("\tivec2 first;") == std::string::npos);
 		}
 	}
 }

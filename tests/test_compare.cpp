@@ -2,7 +2,6 @@
 #include "slow_errors.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "image/compare.h"
 #include "image/drawing.h"
 #include "image/visibility_image.h"

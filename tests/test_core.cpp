@@ -11,12 +11,10 @@
 #include "core/progress.h"
 #include "core/random.h"
 #include "core/remaining_time.h"
-#include "core/round.h"
 
 #include <sys/wait.h>
 
 #include <atomic>
-#include <csignal>
 
 namespace
 {

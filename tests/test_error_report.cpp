@@ -10,7 +10,6 @@
 #include "core/file.h"
 #include "core/random.h"
 #include "core/work_units.h"
-#include "scene/builtin.h"
 #include "shade/gl_context.h"
 #include "study/error_report.h"
 #include "study/measure_view.h"

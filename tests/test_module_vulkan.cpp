@@ -6,13 +6,11 @@
 #include "testing.h"
 #include "vulkan_device.h"
 
-#include "core/file.h"
 #include "core/lists.h"
 #include "methods/recipes.h"
 #include "shade/shade.h"
 
 #include <iostream>
-#include <optional>
 #include <span>
 
 namespace

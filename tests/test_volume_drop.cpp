@@ -9,7 +9,6 @@
 #include "scene/builtin.h"
 #include "volume/build.h"
 #include "volume/evaluate.h"
-#include "volume/occluders.h"
 #include "volume/receivers.h"
 #include "volume/region.h"
 #include "volume/volumes.h"

@@ -43,8 +43,7 @@ struct Drawn
 		kernels.normals = gbuffer.normals;
 		kernels.cells = &plane;
 	}
-	Drawn(const Drawn&) = delete;
-	Drawn& operator=(const Drawn&) = delete;
+	Drawn& operator=(Drawn&&) = delete;
 
 	std::vector<float> depths;
 	PicturePlane plane;

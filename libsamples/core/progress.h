@@ -67,8 +67,7 @@ public:
 			m_progress(m_stage, 0.0);
 		}
 	}
-	ProgressCounter(const ProgressCounter&) = delete;
-	ProgressCounter& operator=(const ProgressCounter&) = delete;
+	ProgressCounter& operator=(ProgressCounter&&) = delete;
 
 	// There may have been fewer items than expected.
 	~ProgressCounter()

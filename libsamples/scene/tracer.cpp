@@ -92,8 +92,7 @@ struct Tracer::Data
 	RTCScene scene = nullptr;
 
 	explicit Data(const Level& of) : level(of) {}
-	Data(const Data&) = delete;
-	Data& operator=(const Data&) = delete;
+	Data& operator=(Data&&) = delete;
 	~Data()
 	{
 		rtcReleaseScene(scene);

@@ -75,8 +75,7 @@ public:
 		rtcReleaseGeometry(geometry);
 		rtcCommitScene(m_scene);
 	}
-	BareEmbree(const BareEmbree&) = delete;
-	BareEmbree& operator=(const BareEmbree&) = delete;
+	BareEmbree& operator=(BareEmbree&&) = delete;
 	~BareEmbree()
 	{
 		rtcReleaseScene(m_scene);

@@ -27,6 +27,44 @@ double rmseOf(const Level& level, BakeSettings settings, BakeFit fit)
 	return checkBake(tracer, level, bakeVertices(tracer, settings, {}), settings, 1000, {}).rmse;
 }
 
+Level floorUnderBox()
+{
+	Level level = emptyLevel();
+	addQuad(level, {-2.0, 0.0, 2.0}, {4.0, 0.0, 0.0}, {0.0, 0.0, -4.0});
+	addBox(level, {-0.31, 0.0, -0.27}, {0.29, 0.5, 0.33});
+	return level;
+}
+
+// Number of vertices inside an edge where another triangle ends: a crack would open there.
+std::size_t verticesWithinEdges(const Level& level)
+{
+	std::size_t found = 0;
+	for (const glm::uvec3& t : level.triangles)
+	{
+		for (int edge = 0; edge < 3; ++edge)
+		{
+			const glm::dvec3 a = level.positions[t[edge]];
+			const glm::dvec3 way = level.positions[t[(edge + 1) % 3]] - a;
+			for (const glm::dvec3& p : level.positions)
+			{
+				const double share = glm::dot(p - a, way) / glm::dot(way, way);
+				found += share > 1e-6 && share < 1.0 - 1e-6 && glm::distance(p, a + share * way) < 1e-9 ? 1U : 0U;
+			}
+		}
+	}
+	return found;
+}
+
+double surfaceOf(const Level& level)
+{
+	double sum = 0.0;
+	for (const double area : areasOf(level))
+	{
+		sum += area;
+	}
+	return sum;
+}
+
 } // namespace
 
 TEST_CASE("bake: a plane reads 1, by either fit", "[bake]")
@@ -538,49 +576,6 @@ TEST_CASE("bake: probes agree with rays in the open, and those inside matter do 
 }
 
 // Triangles are split until the vertex bake meets the requested error.
-
-namespace
-{
-
-Level floorUnderBox()
-{
-	Level level = emptyLevel();
-	addQuad(level, {-2.0, 0.0, 2.0}, {4.0, 0.0, 0.0}, {0.0, 0.0, -4.0});
-	addBox(level, {-0.31, 0.0, -0.27}, {0.29, 0.5, 0.33});
-	return level;
-}
-
-// Number of vertices inside an edge where another triangle ends: a crack would open there.
-std::size_t verticesWithinEdges(const Level& level)
-{
-	std::size_t found = 0;
-	for (const glm::uvec3& t : level.triangles)
-	{
-		for (int edge = 0; edge < 3; ++edge)
-		{
-			const glm::dvec3 a = level.positions[t[edge]];
-			const glm::dvec3 way = level.positions[t[(edge + 1) % 3]] - a;
-			for (const glm::dvec3& p : level.positions)
-			{
-				const double share = glm::dot(p - a, way) / glm::dot(way, way);
-				found += share > 1e-6 && share < 1.0 - 1e-6 && glm::distance(p, a + share * way) < 1e-9 ? 1U : 0U;
-			}
-		}
-	}
-	return found;
-}
-
-double surfaceOf(const Level& level)
-{
-	double sum = 0.0;
-	for (const double area : areasOf(level))
-	{
-		sum += area;
-	}
-	return sum;
-}
-
-} // namespace
 
 TEST_CASE("bake: where few triangles may be left to split, it ends earlier, and no more are left", "[bake]")
 {

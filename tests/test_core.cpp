@@ -47,6 +47,49 @@ std::string messageOf(const std::function<void()>& act)
 
 using Names = std::vector<std::string>;
 
+[[gnu::noinline]] void roundPair(double* pair)
+{
+	pair[0] = static_cast<double>(static_cast<float>(pair[0]));
+	pair[1] = static_cast<double>(static_cast<float>(pair[1]));
+}
+
+constexpr const char* kWorker = "nook_test_worker"; // test_worker.cpp
+
+const auto kNoArguments = [](ValueWriter&) {
+};
+
+// Outcome of a worker that runs this function: its text, or the error.
+std::string outcomeOf(const char* function, const std::optional<IsolationLimits>& limits = IsolationLimits{})
+{
+	std::string answer = "nothing";
+	try
+	{
+		isolate({kWorker, function}, "some.file", limits, kNoArguments, [&](ValueReader& from) { answer = from.text(); });
+	}
+	catch (const Error& error)
+	{
+		answer = std::to_string(static_cast<int>(error.code())) + " " + error.what();
+	}
+	return answer;
+}
+
+// Likewise for a kept worker; the argument is for "trap".
+std::string keptOutcomeOf(const char* function, const std::optional<bool>& argument = std::nullopt)
+{
+	std::string answer;
+	isolate(
+		{kWorker, function, true}, "some.file", IsolationLimits{},
+		[argument](ValueWriter& to)
+		{
+			if (argument)
+			{
+				to.value(*argument);
+			}
+		},
+		[&](ValueReader& from) { answer = from.text(); });
+	return answer;
+}
+
 } // namespace
 
 TEST_CASE("file: bytes come back as they went", "[core]")
@@ -270,17 +313,6 @@ TEST_CASE("math: angles within the stated error", "[core]")
 	CHECK(asinOf(1.0 + 1e-15) == 0.5 * kPi);
 	CHECK(asinOf(-1.0 - 1e-15) == -0.5 * kPi);
 }
-
-namespace
-{
-
-[[gnu::noinline]] void roundPair(double* pair)
-{
-	pair[0] = static_cast<double>(static_cast<float>(pair[0]));
-	pair[1] = static_cast<double>(static_cast<float>(pair[1]));
-}
-
-} // namespace
 
 TEST_CASE("math: rounding to a 32-bit float is kept by the compiler", "[core]")
 {
@@ -527,48 +559,6 @@ TEST_CASE("decimal: what is read is what <charconv> reads", "[core]")
 		REQUIRE((a == b || (std::isnan(a) && std::isnan(b))));
 	}
 }
-
-namespace
-{
-
-constexpr const char* kWorker = "nook_test_worker"; // test_worker.cpp
-
-const auto kNoArguments = [](ValueWriter&) {
-};
-
-// Outcome of a worker that runs this function: its text, or the error.
-std::string outcomeOf(const char* function, const std::optional<IsolationLimits>& limits = IsolationLimits{})
-{
-	std::string answer = "nothing";
-	try
-	{
-		isolate({kWorker, function}, "some.file", limits, kNoArguments, [&](ValueReader& from) { answer = from.text(); });
-	}
-	catch (const Error& error)
-	{
-		answer = std::to_string(static_cast<int>(error.code())) + " " + error.what();
-	}
-	return answer;
-}
-
-// Likewise for a kept worker; the argument is for "trap".
-std::string keptOutcomeOf(const char* function, const std::optional<bool>& argument = std::nullopt)
-{
-	std::string answer;
-	isolate(
-		{kWorker, function, true}, "some.file", IsolationLimits{},
-		[argument](ValueWriter& to)
-		{
-			if (argument)
-			{
-				to.value(*argument);
-			}
-		},
-		[&](ValueReader& from) { answer = from.text(); });
-	return answer;
-}
-
-} // namespace
 
 TEST_CASE("isolate: what a worker writes comes back", "[core]")
 {

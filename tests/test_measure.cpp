@@ -36,6 +36,13 @@ Pattern hexagonRule()
 	return p;
 }
 
+const std::filesystem::path kPatterns = std::filesystem::path(NOOK_SOURCE_DIR) / "patterns";
+
+void checkSame(double measured, double written)
+{
+	CHECK(measured == Approx(written).epsilon(1e-9).margin(1e-12));
+}
+
 } // namespace
 
 TEST_CASE("quality: the published figures of the seven-line rule", "[measure]")
@@ -231,18 +238,6 @@ TEST_CASE("quality: a tile's window on the grid and in closed form agree", "[mea
 	CHECK(q.variant_plane.value() == Approx(q.base_plane.value()).epsilon(1e-6));
 	CHECK(q.window < q.base_plane);
 }
-
-namespace
-{
-
-const std::filesystem::path kPatterns = std::filesystem::path(NOOK_SOURCE_DIR) / "patterns";
-
-void checkSame(double measured, double written)
-{
-	CHECK(measured == Approx(written).epsilon(1e-9).margin(1e-12));
-}
-
-} // namespace
 
 TEST_CASE("catalogue: every entry is there, and measures again what it says of itself", "[catalogue]")
 {

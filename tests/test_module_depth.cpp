@@ -32,8 +32,8 @@ struct GlStored
 void store(const GlTexture& texture, const GlStored& format, const float* values)
 {
 	glBindTexture(GL_TEXTURE_2D, texture.name);
-	glTexImage2D(GL_TEXTURE_2D, 0, static_cast<int>(format.stored), texture.shape.width, texture.shape.height, 0,
-				 format.channels, GL_FLOAT, values);
+	glTexImage2D(GL_TEXTURE_2D, 0, static_cast<int>(format.stored), texture.shape.width, texture.shape.height, 0, format.channels,
+				 GL_FLOAT, values);
 	REQUIRE(glGetError() == GL_NO_ERROR);
 }
 
@@ -119,6 +119,28 @@ std::vector<float> computed(const GBuffer& gbuffer, const DepthFormat& format)
 	settings.radius_m = kRadius;
 	settings.depth = format;
 	return shadeOnCpu(gbuffer, samplesOf(ShadeMethod::vo_line, {scatteredPattern(Domain::disk, 9)}), settings, {2, {}}).visibility;
+}
+
+// The reason why a projection is rejected, for linear depth unless `device`.
+std::string faultOf(const glm::dmat4& projection, bool device = false, bool zero_to_one = false)
+{
+	nook_settings settings;
+	settings.width = 16;
+	settings.height = 9;
+	settings.device_depth = device;
+	settings.zero_to_one = zero_to_one;
+	double numbers[16];
+	std::memcpy(numbers, &projection, sizeof numbers);
+	nook_block block{};
+	block.frame = 7.0F;
+	const char* const reason = nook_fill(block, numbers, settings);
+	CHECK((reason == nullptr) == (block.frame != 7.0F)); // nothing filled
+	return reason == nullptr ? "" : reason;
+}
+
+bool holds(const std::string& text, const char* part)
+{
+	return text.find(part) != std::string::npos;
 }
 
 } // namespace
@@ -241,33 +263,6 @@ TEST_CASE("module: a rectangle of a texture, and a guard band around it", "[emit
 	CHECK(differing(0) == 0);
 	CHECK(differing(8) > 100); // now the walls are neighbours
 }
-
-namespace
-{
-
-// The reason why a projection is rejected, for linear depth unless `device`.
-std::string faultOf(const glm::dmat4& projection, bool device = false, bool zero_to_one = false)
-{
-	nook_settings settings;
-	settings.width = 16;
-	settings.height = 9;
-	settings.device_depth = device;
-	settings.zero_to_one = zero_to_one;
-	double numbers[16];
-	std::memcpy(numbers, &projection, sizeof numbers);
-	nook_block block{};
-	block.frame = 7.0F;
-	const char* const reason = nook_fill(block, numbers, settings);
-	CHECK((reason == nullptr) == (block.frame != 7.0F)); // nothing filled
-	return reason == nullptr ? "" : reason;
-}
-
-bool holds(const std::string& text, const char* part)
-{
-	return text.find(part) != std::string::npos;
-}
-
-} // namespace
 
 TEST_CASE("module: projections of another convention are refused by its name", "[emit]")
 {

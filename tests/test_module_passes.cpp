@@ -139,11 +139,6 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 	return last.shape.format == PictureFormat::quad ? readFloats(last) : readFloats(last);
 }
 
-} // namespace
-
-namespace
-{
-
 // The depth reads stated in a module's introduction, by call.
 int statedReads(const std::string& module, const std::string& call)
 {

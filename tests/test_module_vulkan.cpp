@@ -221,6 +221,77 @@ ComputedPicture computed(const GBuffer& gbuffer, const ModuleSettings& settings,
 	return result;
 }
 
+struct TimedMethod
+{
+	const char* name;
+	ShadeMethod method;
+	int count; // of samples, or slices
+	int steps;
+	bool paper;
+	bool half;
+};
+constexpr std::array kTimed{TimedMethod{"lines 3 x 3", ShadeMethod::vo_line, 3, 0, false, false},
+							TimedMethod{"slices 1 x 2", ShadeMethod::slices, 1, 2, false, false},
+							TimedMethod{"lines 3 x 3, half", ShadeMethod::vo_line, 3, 0, false, true},
+							TimedMethod{"lines 9, one radius", ShadeMethod::vo_line, 9, 0, true, false},
+							TimedMethod{"points 12", ShadeMethod::vo_point, 12, 0, false, false},
+							TimedMethod{"areas 3 x 3", ShadeMethod::vo_area, 3, 0, false, false},
+							TimedMethod{"areas 9, one radius", ShadeMethod::vo_area, 9, 0, true, false},
+							TimedMethod{"Alchemy 9", ShadeMethod::alchemy, 9, 0, false, false},
+							TimedMethod{"slices 1 x 3", ShadeMethod::slices, 1, 3, false, false},
+							TimedMethod{"slices 1 x 4", ShadeMethod::slices, 1, 4, false, false},
+							TimedMethod{"slices 1 x 4, half", ShadeMethod::slices, 1, 4, false, true},
+							TimedMethod{"slices 3 x 6", ShadeMethod::slices, 3, 6, false, false},
+							TimedMethod{"slices 3 x 6, half", ShadeMethod::slices, 3, 6, false, true},
+							TimedMethod{"StatVO, 4 layers, half tables", ShadeMethod::statvo, 0, 0, false, false}};
+
+// Prints the lower quartile of the times of compute shaders.
+void printTimes(std::span<const TimedMethod> methods, std::span<const double> radii_px, int width, int height, int repetitions)
+{
+	const VulkanDevice& vulkan = anyDevice();
+	REQUIRE(vulkan.device() != nullptr);
+	std::cout << vulkan.name() << "\n| method | radius, px | all passes, ms per megapixel | method alone | passes |\n"
+			  << "| --- | --- | --- | --- | --- |\n";
+	const GBuffer gbuffer = builtinView("courtyard", width, height);
+	const auto perMegapixel = [&gbuffer](std::vector<double> times)
+	{
+		std::sort(times.begin(), times.end());
+		return 1e6 * times[times.size() / 4] / (gbuffer.width_px * gbuffer.height_px);
+	};
+	for (const TimedMethod& one : methods)
+	{
+		ShadeSettings shade;
+		shade.method = one.method;
+		if (const MethodRecipe* const recipe = recipeFor(raysRecipes(), one.method); recipe != nullptr && !one.paper)
+		{
+			applyRecipe(shade, *recipe, 1.5);
+		}
+		shade.slices = {std::max(one.count, 1), std::max(one.steps, 1)};
+		shade.statvo.cell_px = 2;
+		shade.filter = one.method == ShadeMethod::statvo ? ShadeFilter::none : ShadeFilter::bilateral;
+		shade.half_resolution = one.half;
+		ModuleSettings settings = moduleOf({one.name, shade}, GlslTarget::vulkan);
+		settings.main = ModuleMain::compute;
+		if (takesPattern(one.method))
+		{
+			settings.methods.front().variants = scatteredTile(domainOf(one.method), 4, one.count, false).variants;
+		}
+		for (const double radius_px : radii_px)
+		{
+			settings.shade.min_radius_px = radius_px;
+			settings.shade.max_radius_px = radius_px;
+			const ComputedPicture picture = computed(gbuffer, settings, repetitions);
+			std::cout << "| " << one.name << " | " << radius_px << " | " << perMegapixel(picture.all_ms) << " | "
+					  << perMegapixel(picture.main_ms) << " |";
+			for (const auto& [call, times] : picture.calls_ms)
+			{
+				std::cout << ' ' << call << ' ' << perMegapixel(times);
+			}
+			std::cout << " |" << std::endl;
+		}
+	}
+}
+
 } // namespace
 
 TEST_CASE("module: HLSL and Vulkan's GLSL compute one picture, that of nook shade", "[emit]")
@@ -313,82 +384,6 @@ TEST_CASE("module: spirv-cross translates HLSL's SPIR-V to MSL", "[emit]")
 		CHECK(readFile(folder / "m.metal").find("fragment main0_out main0(") != std::string::npos);
 	}
 }
-
-namespace
-{
-
-struct TimedMethod
-{
-	const char* name;
-	ShadeMethod method;
-	int count; // of samples, or slices
-	int steps;
-	bool paper;
-	bool half;
-};
-constexpr std::array kTimed{TimedMethod{"lines 3 x 3", ShadeMethod::vo_line, 3, 0, false, false},
-							TimedMethod{"slices 1 x 2", ShadeMethod::slices, 1, 2, false, false},
-							TimedMethod{"lines 3 x 3, half", ShadeMethod::vo_line, 3, 0, false, true},
-							TimedMethod{"lines 9, one radius", ShadeMethod::vo_line, 9, 0, true, false},
-							TimedMethod{"points 12", ShadeMethod::vo_point, 12, 0, false, false},
-							TimedMethod{"areas 3 x 3", ShadeMethod::vo_area, 3, 0, false, false},
-							TimedMethod{"areas 9, one radius", ShadeMethod::vo_area, 9, 0, true, false},
-							TimedMethod{"Alchemy 9", ShadeMethod::alchemy, 9, 0, false, false},
-							TimedMethod{"slices 1 x 3", ShadeMethod::slices, 1, 3, false, false},
-							TimedMethod{"slices 1 x 4", ShadeMethod::slices, 1, 4, false, false},
-							TimedMethod{"slices 1 x 4, half", ShadeMethod::slices, 1, 4, false, true},
-							TimedMethod{"slices 3 x 6", ShadeMethod::slices, 3, 6, false, false},
-							TimedMethod{"slices 3 x 6, half", ShadeMethod::slices, 3, 6, false, true},
-							TimedMethod{"StatVO, 4 layers, half tables", ShadeMethod::statvo, 0, 0, false, false}};
-
-// Prints the lower quartile of the times of compute shaders.
-void printTimes(std::span<const TimedMethod> methods, std::span<const double> radii_px, int width, int height, int repetitions)
-{
-	const VulkanDevice& vulkan = anyDevice();
-	REQUIRE(vulkan.device() != nullptr);
-	std::cout << vulkan.name() << "\n| method | radius, px | all passes, ms per megapixel | method alone | passes |\n"
-			  << "| --- | --- | --- | --- | --- |\n";
-	const GBuffer gbuffer = builtinView("courtyard", width, height);
-	const auto perMegapixel = [&gbuffer](std::vector<double> times)
-	{
-		std::sort(times.begin(), times.end());
-		return 1e6 * times[times.size() / 4] / (gbuffer.width_px * gbuffer.height_px);
-	};
-	for (const TimedMethod& one : methods)
-	{
-		ShadeSettings shade;
-		shade.method = one.method;
-		if (const MethodRecipe* const recipe = recipeFor(raysRecipes(), one.method); recipe != nullptr && !one.paper)
-		{
-			applyRecipe(shade, *recipe, 1.5);
-		}
-		shade.slices = {std::max(one.count, 1), std::max(one.steps, 1)};
-		shade.statvo.cell_px = 2;
-		shade.filter = one.method == ShadeMethod::statvo ? ShadeFilter::none : ShadeFilter::bilateral;
-		shade.half_resolution = one.half;
-		ModuleSettings settings = moduleOf({one.name, shade}, GlslTarget::vulkan);
-		settings.main = ModuleMain::compute;
-		if (takesPattern(one.method))
-		{
-			settings.methods.front().variants = scatteredTile(domainOf(one.method), 4, one.count, false).variants;
-		}
-		for (const double radius_px : radii_px)
-		{
-			settings.shade.min_radius_px = radius_px;
-			settings.shade.max_radius_px = radius_px;
-			const ComputedPicture picture = computed(gbuffer, settings, repetitions);
-			std::cout << "| " << one.name << " | " << radius_px << " | " << perMegapixel(picture.all_ms) << " | "
-					  << perMegapixel(picture.main_ms) << " |";
-			for (const auto& [call, times] : picture.calls_ms)
-			{
-				std::cout << ' ' << call << ' ' << perMegapixel(times);
-			}
-			std::cout << " |" << std::endl;
-		}
-	}
-}
-
-} // namespace
 
 // Hidden: a table for docs/measurements/gpu.md, where the Vulkan device is a GPU.
 TEST_CASE("module times: milliseconds per megapixel of compute shaders, radii in pixels", "[.times]")

@@ -100,6 +100,36 @@ void checkPoints(const Level& level, const glm::dmat3& turn, glm::dvec3 move)
 	}
 }
 
+// A strip of three points along x at 0, 1, 2, and one at (0, 0, 1), with a bone "hand" at x = 2 rotated about z, with the given
+// weights.
+void addSkin(FbxTestScene& scene, const std::vector<double>& weights, const std::string& mode, glm::dvec3 hand_turn)
+{
+	scene.model(1, "body").set("Lcl Translation", numbers({0.0, 100.0, 0.0}));
+	scene.mesh(10, "body", {0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 0, 1}, {3, 1, -1, 3, 2, -2}, 1);
+	scene.model(2, "arm", 0, "LimbNode");
+	FbxTestNode& hand = scene.model(3, "hand", 2, "LimbNode");
+	hand.set("Lcl Translation", numbers({2.0, 0.0, 0.0})).set("Lcl Rotation", numbers({hand_turn.x, hand_turn.y, hand_turn.z}));
+	scene.object("Deformer", 60, "skin", "Skin", 10);
+	FbxTestNode& cluster = scene.object("Deformer", 61, "cluster", "Cluster", 60);
+	scene.connect(3, 61);
+	if (!mode.empty())
+	{
+		cluster.add("Mode", {mode});
+	}
+	cluster.add("Indexes", {std::vector<int32_t>{0, 1, 2}});
+	cluster.add("Weights", {weights});
+	// The mesh was bound at the origin, where the node no longer is.
+	cluster.add("Transform", {std::vector<double>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -2, 0, 0, 1}});
+	cluster.add("TransformLink", {std::vector<double>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 2, 0, 0, 1}});
+}
+
+// Positions of the points that started along x.
+std::vector<glm::dvec3> stripOf(const Level& level)
+{
+	// Corners 3 1 0, 3 2 1.
+	return {level.positions.at(2), level.positions.at(1), level.positions.at(4), level.positions.at(0)};
+}
+
 } // namespace
 
 TEST_CASE("scene: FBX reads the same from text and every binary form", "[scene]")
@@ -512,41 +542,6 @@ TEST_CASE("scene: FBX nodes that mirror keep the front", "[scene]")
 		CHECK(volumeOf(loadScene(folder, scene).level) == Approx(16.0));
 	}
 }
-
-namespace
-{
-
-// A strip of three points along x at 0, 1, 2, and one at (0, 0, 1), with a bone "hand" at x = 2 rotated about z, with the given
-// weights.
-void addSkin(FbxTestScene& scene, const std::vector<double>& weights, const std::string& mode, glm::dvec3 hand_turn)
-{
-	scene.model(1, "body").set("Lcl Translation", numbers({0.0, 100.0, 0.0}));
-	scene.mesh(10, "body", {0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 0, 1}, {3, 1, -1, 3, 2, -2}, 1);
-	scene.model(2, "arm", 0, "LimbNode");
-	FbxTestNode& hand = scene.model(3, "hand", 2, "LimbNode");
-	hand.set("Lcl Translation", numbers({2.0, 0.0, 0.0})).set("Lcl Rotation", numbers({hand_turn.x, hand_turn.y, hand_turn.z}));
-	scene.object("Deformer", 60, "skin", "Skin", 10);
-	FbxTestNode& cluster = scene.object("Deformer", 61, "cluster", "Cluster", 60);
-	scene.connect(3, 61);
-	if (!mode.empty())
-	{
-		cluster.add("Mode", {mode});
-	}
-	cluster.add("Indexes", {std::vector<int32_t>{0, 1, 2}});
-	cluster.add("Weights", {weights});
-	// The mesh was bound at the origin, where the node no longer is.
-	cluster.add("Transform", {std::vector<double>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -2, 0, 0, 1}});
-	cluster.add("TransformLink", {std::vector<double>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 2, 0, 0, 1}});
-}
-
-// Positions of the points that started along x.
-std::vector<glm::dvec3> stripOf(const Level& level)
-{
-	// Corners 3 1 0, 3 2 1.
-	return {level.positions.at(2), level.positions.at(1), level.positions.at(4), level.positions.at(0)};
-}
-
-} // namespace
 
 TEST_CASE("scene: skins of FBX move points as their link mode says", "[scene]")
 {

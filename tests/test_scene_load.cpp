@@ -94,6 +94,79 @@ void checkMask(const LoadedLevel& loaded)
 	}
 }
 
+Level again(const Level& level, const GlbBake& bake = {})
+{
+	const TemporaryFolder folder;
+	writeFile(folder / "level.glb", bakedGlb(level, "nook test", bake));
+	return loadLevel(folder / "level.glb", {}, {}).level;
+}
+
+// The level from its own file, and a cell of it through another file.
+struct Parts
+{
+	Level whole;
+	CellSettings settings;
+	Level cell;
+
+	Parts(const char* name, const Bounds& box, double around_m)
+		: whole(again(loadLevel(name, {}, {}).level)), settings{box, around_m}
+	{
+		cell = again(cutCell(whole, settings, closedTriangles(whole, {}), 1));
+	}
+};
+
+struct Place
+{
+	glm::dvec3 position;
+	glm::dvec3 normal;
+};
+
+// Random positions in the box with random normals.
+std::vector<Place> placesIn(const Bounds& box, std::size_t count)
+{
+	Random random(7);
+	std::vector<Place> places;
+	while (places.size() < count)
+	{
+		const glm::dvec3 share(random.uniform(), random.uniform(), random.uniform());
+		const glm::dvec3 normal = 2.0 * glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 1.0;
+		if (glm::dot(normal, normal) > 1e-4)
+		{
+			places.push_back({box.least + share * (box.most - box.least), glm::normalize(normal)});
+		}
+	}
+	return places;
+}
+
+std::size_t ownOf(const Level& cell)
+{
+	std::size_t count = 0;
+	for (const Mesh& mesh : cell.meshes)
+	{
+		count += mesh.around ? 0 : mesh.triangle_count;
+	}
+	return count;
+}
+
+double greatestDifference(const Parts& parts, const VolumeSettings& settings)
+{
+	const BuiltVolumes whole = buildVolumes(parts.whole, settings, {});
+	const BuiltVolumes cell = buildVolumes(parts.cell, settings, {});
+	CHECK(cell.set.occluders.polygons.size() < whole.set.occluders.polygons.size());
+	const VolumeEvaluator all(whole.set, {});
+	const VolumeEvaluator part(cell.set, {});
+	double greatest = 0.0;
+	double sum = 0.0;
+	for (const Place& place : placesIn(parts.settings.box, 3000))
+	{
+		const double expected = all.occlusion(place.position, place.normal);
+		sum += expected;
+		greatest = std::max(greatest, std::fabs(part.occlusion(place.position, place.normal) - expected));
+	}
+	CHECK(sum > 30.0);
+	return greatest;
+}
+
 } // namespace
 
 TEST_CASE("scene: a cube is the same from every format", "[scene]")
@@ -480,84 +553,6 @@ TEST_CASE("advice: a level in millimetres or of many kilometres is doubted", "[s
 }
 
 // A cell of a level gives the same results as the whole level inside it.
-
-namespace
-{
-
-Level again(const Level& level, const GlbBake& bake = {})
-{
-	const TemporaryFolder folder;
-	writeFile(folder / "level.glb", bakedGlb(level, "nook test", bake));
-	return loadLevel(folder / "level.glb", {}, {}).level;
-}
-
-// The level from its own file, and a cell of it through another file.
-struct Parts
-{
-	Level whole;
-	CellSettings settings;
-	Level cell;
-
-	Parts(const char* name, const Bounds& box, double around_m)
-		: whole(again(loadLevel(name, {}, {}).level)), settings{box, around_m}
-	{
-		cell = again(cutCell(whole, settings, closedTriangles(whole, {}), 1));
-	}
-};
-
-struct Place
-{
-	glm::dvec3 position;
-	glm::dvec3 normal;
-};
-
-// Random positions in the box with random normals.
-std::vector<Place> placesIn(const Bounds& box, std::size_t count)
-{
-	Random random(7);
-	std::vector<Place> places;
-	while (places.size() < count)
-	{
-		const glm::dvec3 share(random.uniform(), random.uniform(), random.uniform());
-		const glm::dvec3 normal = 2.0 * glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 1.0;
-		if (glm::dot(normal, normal) > 1e-4)
-		{
-			places.push_back({box.least + share * (box.most - box.least), glm::normalize(normal)});
-		}
-	}
-	return places;
-}
-
-std::size_t ownOf(const Level& cell)
-{
-	std::size_t count = 0;
-	for (const Mesh& mesh : cell.meshes)
-	{
-		count += mesh.around ? 0 : mesh.triangle_count;
-	}
-	return count;
-}
-
-double greatestDifference(const Parts& parts, const VolumeSettings& settings)
-{
-	const BuiltVolumes whole = buildVolumes(parts.whole, settings, {});
-	const BuiltVolumes cell = buildVolumes(parts.cell, settings, {});
-	CHECK(cell.set.occluders.polygons.size() < whole.set.occluders.polygons.size());
-	const VolumeEvaluator all(whole.set, {});
-	const VolumeEvaluator part(cell.set, {});
-	double greatest = 0.0;
-	double sum = 0.0;
-	for (const Place& place : placesIn(parts.settings.box, 3000))
-	{
-		const double expected = all.occlusion(place.position, place.normal);
-		sum += expected;
-		greatest = std::max(greatest, std::fabs(part.occlusion(place.position, place.normal) - expected));
-	}
-	CHECK(sum > 30.0);
-	return greatest;
-}
-
-} // namespace
 
 TEST_CASE("scene: each triangle is in one cell of a grid, and comes back from its file", "[scene]")
 {

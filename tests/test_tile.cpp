@@ -33,6 +33,79 @@ void checkVariant(const Pattern& variant, std::size_t count)
 	}
 }
 
+// Like errorOf, by moments between variants.
+double errorByMoments(const PatternTile& tile, TileMoments& by_moments, EnergyGradient& gradient, int threads = 1)
+{
+	std::vector<glm::dvec3> points;
+	std::vector<double> weights;
+	for (const Pattern& variant : tile.variants)
+	{
+		points.insert(points.end(), variant.points.begin(), variant.points.end());
+		weights.insert(weights.end(), variant.weights.begin(), variant.weights.end());
+	}
+	return by_moments(points, weights, gradient, threads);
+}
+
+// Squared error of the pattern's share in an interval of azimuths, one of jitters, and a box of both, on the torus.
+double squaredErrorByIntervals(const Pattern& p, int count)
+{
+	double sum = 0.0;
+	for (int k = 1; k <= count; ++k)
+	{
+		const auto index = static_cast<unsigned>(k);
+		const double from[2] = {radicalInverse(index, 2), radicalInverse(index, 3)};
+		const double length[2] = {radicalInverse(index, 5), radicalInverse(index, 7)};
+		double error[3] = {length[0], length[1], length[0] * length[1]};
+		for (std::size_t i = 0; i < p.count(); ++i)
+		{
+			const bool in_x = fraction(p.points[i].x - from[0]) < length[0];
+			const bool in_y = fraction(p.points[i].y - from[1]) < length[1];
+			error[0] -= in_x ? p.weights[i] : 0.0;
+			error[1] -= in_y ? p.weights[i] : 0.0;
+			error[2] -= in_x && in_y ? p.weights[i] : 0.0;
+		}
+		sum += (error[0] * error[0] + error[1] * error[1] + error[2] * error[2]) / (3.0 * count);
+	}
+	return sum;
+}
+
+// The mean squared error over all pixels and frames, evaluating each as one weighted pattern.
+double squaredErrorByUnions(const PatternTile& tile, const TileFilter& filter, const TileTime& time, int last, glm::ivec2 pan)
+{
+	const int lags = last > 0 ? last : time.ema == 1.0 ? 1 : 400;
+	double sum = 0.0;
+	int pixels = 0;
+	for (int frame = 0; frame < time.frames; ++frame)
+	{
+		for (int pixel = 0; pixel < tile.size * tile.size; ++pixel, ++pixels)
+		{
+			std::vector<glm::dvec3> points;
+			std::vector<double> weights;
+			double share = last > 0 ? 1.0 / last : time.ema;
+			for (int lag = 0; lag<lags; ++lag, share *= last> 0 ? 1.0 : 1.0 - time.ema)
+			{
+				for (int tap = 0; tap < static_cast<int>(filter.taps.size()); ++tap)
+				{
+					const int x = pixel % tile.size + tap % filter.width - lag * pan.x + 4000 * tile.size;
+					const int y = pixel / tile.size + tap / filter.width - lag * pan.y + 4000 * tile.size;
+					const int variant = variantOfFrame(tile, frame - lag + 400 * tile.frames);
+					const int area = tile.size * tile.size;
+					const int row =
+						variant / area * area + (y + variant / tile.size) % tile.size * tile.size + (x + variant) % tile.size;
+					const Pattern& pattern = tile.variants[static_cast<std::size_t>(row)];
+					points.insert(points.end(), pattern.points.begin(), pattern.points.end());
+					for (const double w : pattern.weights)
+					{
+						weights.push_back(w * share * filter.taps[static_cast<std::size_t>(tap)]);
+					}
+				}
+			}
+			sum += squaredError(tile.domain, Ensemble::plane, Part::whole, points, weights);
+		}
+	}
+	return sum / pixels;
+}
+
 } // namespace
 
 TEST_CASE("tile: the window's mean is close to exact and each variant stays good", "[pattern]")
@@ -178,24 +251,6 @@ TEST_CASE("tile: more memory than may be taken is refused before work", "[patter
 	CHECK(tileMemory(recipe, base, 2) < need / 8);
 }
 
-namespace
-{
-
-// Like errorOf, by moments between variants.
-double errorByMoments(const PatternTile& tile, TileMoments& by_moments, EnergyGradient& gradient, int threads = 1)
-{
-	std::vector<glm::dvec3> points;
-	std::vector<double> weights;
-	for (const Pattern& variant : tile.variants)
-	{
-		points.insert(points.end(), variant.points.begin(), variant.points.end());
-		weights.insert(weights.end(), variant.weights.begin(), variant.weights.end());
-	}
-	return by_moments(points, weights, gradient, threads);
-}
-
-} // namespace
-
 TEST_CASE("tile moments: nearly the exact error, between frames alike and not alike in time, and of one tile that moves",
 		  "[pattern]")
 {
@@ -288,34 +343,6 @@ TEST_CASE("tile: very many samples are made by moments, about as good and the sa
 	CHECK(std::sqrt(errorOf(tile, sharesOf(3, recipe.filters[0], time))) < 0.38 * planeErrorOf(base));
 	CHECK(generateTile(base, recipe, RunSettings{1, {}}).variants[20].points == tile.variants[20].points);
 }
-
-namespace
-{
-
-// Squared error of the pattern's share in an interval of azimuths, one of jitters, and a box of both, on the torus.
-double squaredErrorByIntervals(const Pattern& p, int count)
-{
-	double sum = 0.0;
-	for (int k = 1; k <= count; ++k)
-	{
-		const auto index = static_cast<unsigned>(k);
-		const double from[2] = {radicalInverse(index, 2), radicalInverse(index, 3)};
-		const double length[2] = {radicalInverse(index, 5), radicalInverse(index, 7)};
-		double error[3] = {length[0], length[1], length[0] * length[1]};
-		for (std::size_t i = 0; i < p.count(); ++i)
-		{
-			const bool in_x = fraction(p.points[i].x - from[0]) < length[0];
-			const bool in_y = fraction(p.points[i].y - from[1]) < length[1];
-			error[0] -= in_x ? p.weights[i] : 0.0;
-			error[1] -= in_y ? p.weights[i] : 0.0;
-			error[2] -= in_x && in_y ? p.weights[i] : 0.0;
-		}
-		sum += (error[0] * error[0] + error[1] * error[1] + error[2] * error[2]) / (3.0 * count);
-	}
-	return sum;
-}
-
-} // namespace
 
 TEST_CASE("tile: the error of slices is that over periodic intervals and boxes, with its gradient", "[pattern]")
 {
@@ -429,48 +456,6 @@ TEST_CASE("tile: copies of a smaller tile where frames move it, and transforms t
 }
 
 // Errors behind a filter and over frames, and the tiles optimised for them.
-
-namespace
-{
-
-// The mean squared error over all pixels and frames, evaluating each as one weighted pattern.
-double squaredErrorByUnions(const PatternTile& tile, const TileFilter& filter, const TileTime& time, int last, glm::ivec2 pan)
-{
-	const int lags = last > 0 ? last : time.ema == 1.0 ? 1 : 400;
-	double sum = 0.0;
-	int pixels = 0;
-	for (int frame = 0; frame < time.frames; ++frame)
-	{
-		for (int pixel = 0; pixel < tile.size * tile.size; ++pixel, ++pixels)
-		{
-			std::vector<glm::dvec3> points;
-			std::vector<double> weights;
-			double share = last > 0 ? 1.0 / last : time.ema;
-			for (int lag = 0; lag<lags; ++lag, share *= last> 0 ? 1.0 : 1.0 - time.ema)
-			{
-				for (int tap = 0; tap < static_cast<int>(filter.taps.size()); ++tap)
-				{
-					const int x = pixel % tile.size + tap % filter.width - lag * pan.x + 4000 * tile.size;
-					const int y = pixel / tile.size + tap / filter.width - lag * pan.y + 4000 * tile.size;
-					const int variant = variantOfFrame(tile, frame - lag + 400 * tile.frames);
-					const int area = tile.size * tile.size;
-					const int row =
-						variant / area * area + (y + variant / tile.size) % tile.size * tile.size + (x + variant) % tile.size;
-					const Pattern& pattern = tile.variants[static_cast<std::size_t>(row)];
-					points.insert(points.end(), pattern.points.begin(), pattern.points.end());
-					for (const double w : pattern.weights)
-					{
-						weights.push_back(w * share * filter.taps[static_cast<std::size_t>(tap)]);
-					}
-				}
-			}
-			sum += squaredError(tile.domain, Ensemble::plane, Part::whole, points, weights);
-		}
-	}
-	return sum / pixels;
-}
-
-} // namespace
 
 TEST_CASE("tile: the error behind a filter is that of the pattern seen at each pixel", "[pattern]")
 {

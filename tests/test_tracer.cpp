@@ -18,6 +18,11 @@ namespace
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
+double distanceTo(const Bounds& box, glm::dvec3 point)
+{
+	return glm::length(point - glm::clamp(point, box.least, box.most));
+}
+
 } // namespace
 
 TEST_CASE("tracer: hits lie on their triangle, at their distance", "[reference]")
@@ -152,16 +157,6 @@ TEST_CASE("tracer: rays along edges meet what every triangle in double says", "[
 }
 
 // A tree restricted to the reach of the rays compared with one of the whole level.
-
-namespace
-{
-
-double distanceTo(const Bounds& box, glm::dvec3 point)
-{
-	return glm::length(point - glm::clamp(point, box.least, box.most));
-}
-
-} // namespace
 
 TEST_CASE("vicinity: no box within reach of a point is left out, most of the others are", "[reference]")
 {

@@ -169,6 +169,28 @@ Outcome outcomeOf(bool of_time, OverLevels over, double part, double noise, uint
 	return outcome;
 }
 
+// Candidates of known times and errors, on four views that differ by `spread` for the second one of each pair.
+MeasureTrial known(const std::vector<double>& times, const std::vector<double>& errors, double spread)
+{
+	return [=](std::size_t i, const Fidelity& fidelity)
+	{
+		Trial trial;
+		for (std::size_t view = 0; view < fidelity.views; ++view)
+		{
+			const double pixels = fidelity.scale * fidelity.scale;
+			const double off = i % 2 == 0 ? 0.0 : view % 2 == 0 ? spread : -spread;
+			const double time = times[i] * pixels;
+			trial.views.push_back({0, time, 0.99 * time, 1.01 * time, errors[i] + off});
+		}
+		return trial;
+	};
+}
+
+TuneSearchSettings fourViews()
+{
+	return {{{0.5, 1, 1}, {1.0, 2, 1}, {1.0, 4, 1}, {1.0, 4, 5}}};
+}
+
 } // namespace
 
 TEST_CASE("tune: within 5 % of the grid's best for at most a fifth of its cost", "[tune]")
@@ -336,33 +358,6 @@ TEST_CASE("tune: two candidates differ when their differences agree over views",
 	CHECK_FALSE(one.errors_differ);
 	CHECK_FALSE(one.error_standard.has_value());
 }
-
-namespace
-{
-
-// Candidates of known times and errors, on four views that differ by `spread` for the second one of each pair.
-MeasureTrial known(const std::vector<double>& times, const std::vector<double>& errors, double spread)
-{
-	return [=](std::size_t i, const Fidelity& fidelity)
-	{
-		Trial trial;
-		for (std::size_t view = 0; view < fidelity.views; ++view)
-		{
-			const double pixels = fidelity.scale * fidelity.scale;
-			const double off = i % 2 == 0 ? 0.0 : view % 2 == 0 ? spread : -spread;
-			const double time = times[i] * pixels;
-			trial.views.push_back({0, time, 0.99 * time, 1.01 * time, errors[i] + off});
-		}
-		return trial;
-	};
-}
-
-TuneSearchSettings fourViews()
-{
-	return {{{0.5, 1, 1}, {1.0, 2, 1}, {1.0, 4, 1}, {1.0, 4, 5}}};
-}
-
-} // namespace
 
 TEST_CASE("tune: of errors that do not differ significantly the cheapest is taken", "[tune]")
 {

@@ -195,6 +195,47 @@ glm::dvec3 tilted(double u, double v)
 	return glm::dvec3(glm::vec3(exact));
 }
 
+// A ball of 16 × 16 × 6 × 2 triangles on a grid of 2⁻²⁰, so that midpoints of edges are exact. `slits` of them, at edges inside it,
+// have a third vertex on an edge with a degenerate triangle between them and their neighbour: the result of cleaning up a scan.
+Level ballWith(int slits)
+{
+	Maker ball;
+	for (int face = 0; face < 6; ++face)
+	{
+		const double sign = face < 3 ? 1.0 : -1.0;
+		const auto at = [&](int u, int v)
+		{
+			glm::dvec3 p(0.0);
+			p[face % 3] = sign;
+			p[(face + 1) % 3] = u / 8.0 - 1.0;
+			p[(face + 2) % 3] = sign * (v / 8.0 - 1.0);
+			p *= 0x1p20 / glm::length(p);
+			return ball.vertex(glm::dvec3(std::round(p.x), std::round(p.y), std::round(p.z)) * 0x1p-20);
+		};
+		for (int i = 0; i < 256; ++i)
+		{
+			const uint32_t a = at(i % 16, i / 16);
+			const uint32_t b = at(i % 16 + 1, i / 16);
+			const uint32_t c = at(i % 16 + 1, i / 16 + 1);
+			const uint32_t d = at(i % 16, i / 16 + 1);
+			ball.triangle(a, b, c);
+			if (slits > 0 && i % 3 == 0)
+			{
+				slits -= 1;
+				const uint32_t middle = ball.vertex(0.5 * (ball.level.positions[a] + ball.level.positions[c]));
+				ball.triangle(a, middle, d);
+				ball.triangle(middle, c, d);
+				ball.triangle(a, c, middle); // without area
+			}
+			else
+			{
+				ball.triangle(a, c, d);
+			}
+		}
+	}
+	return ball.level;
+}
+
 } // namespace
 
 TEST_CASE("volume: a wall of 2, 200 and 20,000 triangles becomes the same polygon", "[volume][occluders]")
@@ -363,52 +404,6 @@ TEST_CASE("volume: closed surfaces are oriented; sheets, rooms and masks have tw
 	glass.level.material_list[0].alpha_mode = nook::AlphaMode::mask;
 	REQUIRE(twoSided(glass.level) == 6);
 }
-
-namespace
-{
-
-// A ball of 16 × 16 × 6 × 2 triangles on a grid of 2⁻²⁰, so that midpoints of edges are exact. `slits` of them, at edges inside it,
-// have a third vertex on an edge with a degenerate triangle between them and their neighbour: the result of cleaning up a scan.
-Level ballWith(int slits)
-{
-	Maker ball;
-	for (int face = 0; face < 6; ++face)
-	{
-		const double sign = face < 3 ? 1.0 : -1.0;
-		const auto at = [&](int u, int v)
-		{
-			glm::dvec3 p(0.0);
-			p[face % 3] = sign;
-			p[(face + 1) % 3] = u / 8.0 - 1.0;
-			p[(face + 2) % 3] = sign * (v / 8.0 - 1.0);
-			p *= 0x1p20 / glm::length(p);
-			return ball.vertex(glm::dvec3(std::round(p.x), std::round(p.y), std::round(p.z)) * 0x1p-20);
-		};
-		for (int i = 0; i < 256; ++i)
-		{
-			const uint32_t a = at(i % 16, i / 16);
-			const uint32_t b = at(i % 16 + 1, i / 16);
-			const uint32_t c = at(i % 16 + 1, i / 16 + 1);
-			const uint32_t d = at(i % 16, i / 16 + 1);
-			ball.triangle(a, b, c);
-			if (slits > 0 && i % 3 == 0)
-			{
-				slits -= 1;
-				const uint32_t middle = ball.vertex(0.5 * (ball.level.positions[a] + ball.level.positions[c]));
-				ball.triangle(a, middle, d);
-				ball.triangle(middle, c, d);
-				ball.triangle(a, c, middle); // without area
-			}
-			else
-			{
-				ball.triangle(a, c, d);
-			}
-		}
-	}
-	return ball.level;
-}
-
-} // namespace
 
 TEST_CASE("volume: triangles without area change nothing about a closed scan's sides, there or dropped", "[volume][occluders]")
 {

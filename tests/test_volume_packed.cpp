@@ -26,6 +26,56 @@ template <class Item> bool equalBytes(const std::vector<Item>& a, const std::vec
 	return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Item)) == 0);
 }
 
+std::string glbOf(const VolumeSet& volumes, const VolumeFileSettings& settings = {})
+{
+	return volumeGlb(volumes, settings, "test", "nook test", {}).bytes;
+}
+
+// A copy without slack at its end, so that a sanitizer detects overruns.
+class ExactBytes
+{
+public:
+	explicit ExactBytes(std::string_view bytes) : m_bytes(new char[bytes.size()]), m_size(bytes.size())
+	{
+		std::copy(bytes.begin(), bytes.end(), m_bytes.get());
+	}
+	const char* open(nook_volumes::Volumes& volumes) const
+	{
+		return volumes.open(m_bytes.get(), m_size, {meshopt_decodeVertexBuffer, meshopt_decodeIndexBuffer});
+	}
+
+private:
+	std::unique_ptr<char[]> m_bytes;
+	std::size_t m_size;
+};
+
+// Reads everything an engine would, into a sum, so that nothing is optimised away.
+double walked(const nook_volumes::Volumes& volumes)
+{
+	double sum = volumes.compensated(0.3) + volumes.header().distance;
+	for (std::size_t c = 0; c < volumes.clusterCount(); ++c)
+	{
+		const nook_volumes::Cluster& cluster = volumes.clusters()[c];
+		for (uint32_t p = cluster.first_polygon; p < cluster.first_polygon + cluster.polygon_count; ++p)
+		{
+			const nook_volumes::Polygon& polygon = volumes.polygons()[p];
+			for (uint32_t i = 0; i < nook_volumes::cornerCountOf(polygon); ++i)
+			{
+				double at[3];
+				volumes.position(cluster, volumes.corners()[polygon.first_corner + i], at);
+				sum += at[0] + at[1] + at[2];
+			}
+		}
+		for (uint32_t i = cluster.first_index; i < cluster.first_index + cluster.index_count; ++i)
+		{
+			const uint32_t at = volumes.indices()[i];
+			sum += volumes.hasPrisms() || volumes.sharesCorners() ? volumes.vertices()[cluster.first_vertex + at].x
+																  : volumes.corners()[cluster.first_corner + at].x;
+		}
+	}
+	return sum;
+}
+
 } // namespace
 
 TEST_CASE("volume: clusters cover all polygons, hold what they reach, and are no larger than asked", "[volume][clusters]")
@@ -260,61 +310,6 @@ TEST_CASE("volume: prisms are closed, face outward, and are those of the rounded
 }
 
 // Volumes as files: 16-bit round trips, and no file breaks its reader.
-
-namespace
-{
-
-std::string glbOf(const VolumeSet& volumes, const VolumeFileSettings& settings = {})
-{
-	return volumeGlb(volumes, settings, "test", "nook test", {}).bytes;
-}
-
-// A copy without slack at its end, so that a sanitizer detects overruns.
-class ExactBytes
-{
-public:
-	explicit ExactBytes(std::string_view bytes) : m_bytes(new char[bytes.size()]), m_size(bytes.size())
-	{
-		std::copy(bytes.begin(), bytes.end(), m_bytes.get());
-	}
-	const char* open(nook_volumes::Volumes& volumes) const
-	{
-		return volumes.open(m_bytes.get(), m_size, {meshopt_decodeVertexBuffer, meshopt_decodeIndexBuffer});
-	}
-
-private:
-	std::unique_ptr<char[]> m_bytes;
-	std::size_t m_size;
-};
-
-// Reads everything an engine would, into a sum, so that nothing is optimised away.
-double walked(const nook_volumes::Volumes& volumes)
-{
-	double sum = volumes.compensated(0.3) + volumes.header().distance;
-	for (std::size_t c = 0; c < volumes.clusterCount(); ++c)
-	{
-		const nook_volumes::Cluster& cluster = volumes.clusters()[c];
-		for (uint32_t p = cluster.first_polygon; p < cluster.first_polygon + cluster.polygon_count; ++p)
-		{
-			const nook_volumes::Polygon& polygon = volumes.polygons()[p];
-			for (uint32_t i = 0; i < nook_volumes::cornerCountOf(polygon); ++i)
-			{
-				double at[3];
-				volumes.position(cluster, volumes.corners()[polygon.first_corner + i], at);
-				sum += at[0] + at[1] + at[2];
-			}
-		}
-		for (uint32_t i = cluster.first_index; i < cluster.first_index + cluster.index_count; ++i)
-		{
-			const uint32_t at = volumes.indices()[i];
-			sum += volumes.hasPrisms() || volumes.sharesCorners() ? volumes.vertices()[cluster.first_vertex + at].x
-																  : volumes.corners()[cluster.first_corner + at].x;
-		}
-	}
-	return sum;
-}
-
-} // namespace
 
 TEST_CASE("emit: a file above its limit is refused with the options that would make it smaller", "[emit][volume]")
 {

@@ -590,12 +590,6 @@ std::optional<Settings> settingsOf(const std::vector<std::string>& arguments)
 	return settings;
 }
 
-} // namespace
-} // namespace nook::hostile
-
-namespace
-{
-
 // How much slower than a second per GB this machine allocates memory: 1 on most, 4 on some virtual machines.
 double memorySlowness()
 {
@@ -616,6 +610,7 @@ double memorySlowness()
 }
 
 } // namespace
+} // namespace nook::hostile
 
 int main(int argc, char** argv)
 {

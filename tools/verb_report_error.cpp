@@ -223,14 +223,7 @@ void runReport(ErrorOptions& options, VerbProgress& progress)
 	inputs.push_back(options.baseline);
 	std::erase(inputs, "");
 	checkOutputs(options.outputs, kPages, inputs);
-	if (options.join.empty())
-	{
-		measure(options, progress);
-	}
-	else
-	{
-		join(options);
-	}
+	options.join.empty() ? measure(options, progress) : join(options);
 }
 
 } // namespace

@@ -73,11 +73,8 @@ inline float deviceOf(double depth, const Convention& convention, int bits)
 
 inline std::vector<float> devicesOf(const GBuffer& gbuffer, const Convention& convention, int bits)
 {
-	std::vector<float> devices;
-	for (const float depth : gbuffer.depth)
-	{
-		devices.push_back(deviceOf(static_cast<double>(depth), convention, bits));
-	}
+	const std::vector<float> devices =
+		mapped(gbuffer.depth, [&](const float depth) { return deviceOf(static_cast<double>(depth), convention, bits); });
 	return devices;
 }
 

@@ -158,11 +158,8 @@ std::vector<float> linearReference(const SmallView& view, double radius_m)
 	settings.falloff = Falloff::linear;
 	settings.radius_m = radius_m;
 	settings.rays = 1000;
-	std::vector<float> visibility;
-	for (const ReferenceValue& value : referenceOfGBuffer(&tracer, view.gbuffer, settings, {4, {}}))
-	{
-		visibility.push_back(static_cast<float>(value.visibility));
-	}
+	const std::vector<float> visibility = mapped(referenceOfGBuffer(&tracer, view.gbuffer, settings, {4, {}}),
+												 [](const ReferenceValue& value) { return static_cast<float>(value.visibility); });
 	return visibility;
 }
 

@@ -4,7 +4,6 @@
 #include "small_volumes.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "shade/aov_gl_parts.h"
 #include "volume/evaluate.h"
 

@@ -7,10 +7,8 @@
 #include "bake/bake.h"
 #include "bake/probes.h"
 #include "bake/surface_samples.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/json_reader.h"
-#include "core/lists.h"
 #include "scene/gbuffer.h"
 #include "scene/level_glb.h"
 #include "scene/load.h"
@@ -57,12 +55,7 @@ std::size_t verticesWithinEdges(const Level& level)
 
 double surfaceOf(const Level& level)
 {
-	double sum = 0.0;
-	for (const double area : areasOf(level))
-	{
-		sum += area;
-	}
-	return sum;
+	return sumOver(areasOf(level));
 }
 
 } // namespace
@@ -488,11 +481,8 @@ TEST_CASE("bake: values are read again and drawn where the view shows what was b
 	TemporaryFolder folder;
 	Level level = emptyLevel();
 	addFloor(level, {-2.0, 0.0, -2.0}, 4.0, 8);
-	std::vector<float> values;
-	for (const glm::dvec3 position : level.positions)
-	{
-		values.push_back(static_cast<float>(0.5 + 0.2 * position.x));
-	}
+	const std::vector<float> values =
+		mapped(level.positions, [](const glm::dvec3 position) { return static_cast<float>(0.5 + 0.2 * position.x); });
 	const std::string path = folder / "a.glb";
 	writeFile(path, bakedGlb(level, "nook test", {values, false, {}, {}, {}, {}, {}}));
 	const LoadedLevel loaded = loadLevel(path, {}, {});

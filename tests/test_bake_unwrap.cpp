@@ -4,7 +4,6 @@
 #include "testing.h"
 
 #include "bake/unwrap.h"
-#include "core/error.h"
 #include "core/math.h"
 #include "core/random.h"
 

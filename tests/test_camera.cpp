@@ -3,7 +3,6 @@
 #include "small_pictures.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/math.h"
 #include "core/random.h"
 #include "scene/builtin.h"
@@ -381,11 +380,8 @@ TEST_CASE("camera: nobody stands on a roof where there is a floor", "[camera]")
 		test::addBox(level, {19, 0, z}, {20, 5, z + 1});
 	}
 	const Tracer tracer(level, {});
-	int above = 0;
-	for (const LevelCamera& camera : chooseCameras(tracer, 6, {}))
-	{
-		above += camera.world_from_camera[3].y > 9.0 ? 1 : 0;
-	}
+	const int above = sumOver(chooseCameras(tracer, 6, {}),
+							  [](const LevelCamera& camera) { return camera.world_from_camera[3].y > 9.0 ? 1 : 0; });
 	CHECK(above == 0);
 }
 

@@ -3,7 +3,6 @@
 #include "testing.h"
 
 #include "core/decimal.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/isolate.h"
 #include "core/math.h"
@@ -367,11 +366,7 @@ TEST_CASE("random: below gives every value as often", "[core]")
 	{
 		hits[random.below(6)] += 1;
 	}
-	double chi2 = 0.0;
-	for (const int n : hits)
-	{
-		chi2 += (n - 10000.0) * (n - 10000.0) / 10000.0;
-	}
+	const double chi2 = sumOver(hits, [](const int n) { return (n - 10000.0) * (n - 10000.0) / 10000.0; });
 	CHECK(chi2 < 20.5); // 0.1 % of the time above, five degrees of freedom
 	CHECK(random.below(1) == 0);
 }

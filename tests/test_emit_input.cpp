@@ -3,7 +3,6 @@
 #include "emit_samples.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
 

@@ -6,7 +6,6 @@
 
 #include "core/base64.h"
 #include "core/content_hash.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/random.h"
 #include "core/work_units.h"

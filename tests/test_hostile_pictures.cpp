@@ -5,7 +5,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/image_codec.h"
 #include "core/isolate.h"
 

@@ -8,9 +8,7 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/file.h"
-#include "core/lists.h"
 #include "emit/module.h"
 #include "methods/block.h"
 #include "methods/kernel_text.h"

@@ -46,11 +46,8 @@ void storeDepth(const GlTexture& texture, int bits, const std::vector<float>& de
 		store(texture, {stored, GL_DEPTH_COMPONENT}, devices.data());
 		return;
 	}
-	std::vector<std::uint16_t> steps;
-	for (const float device : devices)
-	{
-		steps.push_back(static_cast<std::uint16_t>(static_cast<double>(device) * 65535.0 + 0.5));
-	}
+	const std::vector<std::uint16_t> steps =
+		mapped(devices, [](const float device) { return static_cast<std::uint16_t>(static_cast<double>(device) * 65535.0 + 0.5); });
 	glBindTexture(GL_TEXTURE_2D, texture.name);
 	glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT16, texture.shape.width, texture.shape.height, 0, GL_DEPTH_COMPONENT,
 				 GL_UNSIGNED_SHORT, steps.data());
@@ -95,11 +92,8 @@ nook_block blockFor(const glm::dmat4& projection, const nook_settings& settings)
 
 std::vector<glm::vec4> fourOf(const std::vector<glm::vec3>& normals, bool from_zero)
 {
-	std::vector<glm::vec4> four;
-	for (const glm::vec3& normal : normals)
-	{
-		four.emplace_back(from_zero ? 0.5F * normal + 0.5F : normal, 0.0F);
-	}
+	const std::vector<glm::vec4> four =
+		mapped(normals, [&](const glm::vec3& normal) { return glm::vec4(from_zero ? 0.5F * normal + 0.5F : normal, 0.0F); });
 	return four;
 }
 
@@ -425,10 +419,6 @@ TEST_CASE("module: device depth needs no more settings than linear depth", "[emi
 	CAPTURE(difference.mean, difference.worst);
 	CHECK(difference.mean <= 1e-3);
 	CHECK(difference.beyond <= 1e-2);
-	double closed = 0.0;
-	for (const float value : pictures[0])
-	{
-		closed += 1.0 - static_cast<double>(value);
-	}
+	const double closed = sumOver(pictures[0], [](const float value) { return 1.0 - static_cast<double>(value); });
 	CHECK(closed > 0.03 * static_cast<double>(pictures[0].size())); // the effect is visible
 }

@@ -8,7 +8,6 @@
 #include "testing.h"
 
 #include "core/file.h"
-#include "core/lists.h"
 #include "emit/module.h"
 #include "methods/block.h"
 #include "methods/method_table.h"
@@ -78,11 +77,8 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 	const GlTexture depths(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data());
 	const GlTexture normals(gbuffer.width_px, gbuffer.height_px, 4, &four[0].x);
 	const std::unique_ptr<GlTexture> tile = tileOf(samples);
-	std::vector<std::unique_ptr<GlTexture>> pictures;
-	for (const PictureShape& shape : plan.pictures)
-	{
-		pictures.push_back(std::make_unique<GlTexture>(shape));
-	}
+	const std::vector<std::unique_ptr<GlTexture>> pictures =
+		mapped(plan.pictures, [](const PictureShape& shape) { return std::make_unique<GlTexture>(shape); });
 	std::string entry;
 	std::vector<std::string> calls;
 	std::vector<ShadeRead> upsampled;

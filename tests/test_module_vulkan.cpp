@@ -6,7 +6,6 @@
 #include "testing.h"
 #include "vulkan_device.h"
 
-#include "core/lists.h"
 #include "methods/recipes.h"
 #include "shade/shade.h"
 
@@ -154,11 +153,8 @@ ComputedPicture computed(const GBuffer& gbuffer, const ModuleSettings& settings,
 	const std::vector<glm::vec4> texels = tileTexels(samples);
 	const VulkanPicture tile(vulkan, {PictureFormat::quad, static_cast<int>(texels.size()) / samples.count, samples.count},
 							 texels.data());
-	std::vector<std::unique_ptr<VulkanPicture>> pictures;
-	for (const PictureShape& shape : plan.pictures)
-	{
-		pictures.push_back(std::make_unique<VulkanPicture>(vulkan, shape));
-	}
+	const std::vector<std::unique_ptr<VulkanPicture>> pictures =
+		mapped(plan.pictures, [&](const PictureShape& shape) { return std::make_unique<VulkanPicture>(vulkan, shape); });
 	std::vector<std::string> calls;
 	ComputedPicture result{{}, std::vector<double>(static_cast<std::size_t>(repetitions)), {}, {}};
 	result.main_ms = result.all_ms;

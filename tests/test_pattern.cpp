@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "testing.h"
 
-#include "core/error.h"
 #include "pattern/cells.h"
 #include "pattern/energy.h"
 #include "pattern/methods.h"

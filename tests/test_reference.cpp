@@ -4,7 +4,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/file.h"
 #include "core/random.h"
 #include "scene/reference.h"
@@ -377,11 +376,8 @@ TEST_CASE("reference: a plane does not occlude itself, from a millimetre to 1000
 			const Tracer tracer(level, {});
 			ReferenceSettings settings = hard(kInfinity);
 			settings.rays = 256;
-			std::size_t occluded = 0;
-			for (const ReferenceValue& value : referenceAtPoints(tracer, points, settings, {}))
-			{
-				occluded += value.visibility < 1.0 ? 1U : 0U;
-			}
+			const std::size_t occluded = sumOver(referenceAtPoints(tracer, points, settings, {}), [](const ReferenceValue& value)
+												 { return value.visibility < 1.0 ? std::size_t{1} : std::size_t{0}; });
 			CAPTURE(away, size);
 			CHECK(occluded == 0);
 		}

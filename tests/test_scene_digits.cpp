@@ -4,7 +4,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "scene/level_glb.h"
 #include "scene/reference.h"
 #include "scene/tracer.h"

@@ -5,7 +5,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/math.h"
 
 #include <glm/mat3x3.hpp>

@@ -7,7 +7,6 @@
 #include "testing.h"
 
 #include "bake/bake.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/json_reader.h"
 #include "core/json_text.h"
@@ -140,11 +139,7 @@ std::vector<Place> placesIn(const Bounds& box, std::size_t count)
 
 std::size_t ownOf(const Level& cell)
 {
-	std::size_t count = 0;
-	for (const Mesh& mesh : cell.meshes)
-	{
-		count += mesh.around ? 0 : mesh.triangle_count;
-	}
+	const std::size_t count = sumOver(cell.meshes, [](const Mesh& mesh) { return mesh.around ? 0 : mesh.triangle_count; });
 	return count;
 }
 

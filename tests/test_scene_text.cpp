@@ -4,7 +4,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/json_reader.h"
 #include "core/json_text.h"
 #include "scene/mesh_text.h"

@@ -5,7 +5,6 @@
 #include "small_views.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "scene/reference.h"

@@ -5,7 +5,6 @@
 #include "small_samples.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "pattern/recipe.h"
 #include "shade/shade.h"
 
@@ -45,11 +44,7 @@ struct Views
 // E(depth + r), times w / 2z for each line, relative to the open half above the tangent plane.
 double boundOf(shade_kernels::Kernels& kernels, const ShadeSamples& samples, float depth, double radius)
 {
-	double sum = 0.0;
-	for (const glm::vec4& line : samples.samples)
-	{
-		sum += static_cast<double>(line.w / line.z);
-	}
+	const double sum = sumOver(samples.samples, [](const glm::vec4& line) { return static_cast<double>(line.w / line.z); });
 	return 2.0 * sum * static_cast<double>(kernels.nookSlack(depth, static_cast<float>(radius))) / radius;
 }
 

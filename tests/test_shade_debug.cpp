@@ -226,11 +226,8 @@ TEST_CASE("shade debug: noise is the deviation of the variants' pictures, and 0 
 		const std::vector<Pattern> variants = variantsFor(method, count);
 		const std::vector<float> noise = drawn(gbuffer, samplesOf(method, variants), settings);
 		settings.debug.reset();
-		std::vector<std::vector<float>> pictures;
-		for (const Pattern& variant : variants)
-		{
-			pictures.push_back(drawn(gbuffer, samplesOf(method, {variant}), settings));
-		}
+		const std::vector<std::vector<float>> pictures =
+			mapped(variants, [&](const Pattern& variant) { return drawn(gbuffer, samplesOf(method, {variant}), settings); });
 		double most = 0.0;
 		for (std::size_t i = 0; i < noise.size(); ++i)
 		{

@@ -4,7 +4,6 @@
 #include "small_views.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/random.h"
 #include "scene/reference.h"
 #include "shade/gl_context.h"
@@ -47,11 +46,7 @@ GBuffer heights(int width, int height, const std::function<double(int, int)>& at
 
 double meanOf(const std::vector<float>& values)
 {
-	double sum = 0.0;
-	for (const float value : values)
-	{
-		sum += static_cast<double>(value);
-	}
+	const double sum = sumOver(values, [](const float value) { return static_cast<double>(value); });
 	return sum / static_cast<double>(values.size());
 }
 

@@ -5,7 +5,6 @@
 #include "small_views.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/random.h"
 #include "shade/gl_context.h"
 #include "shade/run_passes.h"

@@ -4,7 +4,6 @@
 #include "small_views.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/random.h"
 #include "methods/block.h"
 #include "methods/kernels.h"

@@ -2,7 +2,6 @@
 #include "testing.h"
 #include "tile_errors.h"
 
-#include "core/error.h"
 #include "pattern/recipe.h"
 #include "pattern/tile_parts.h"
 

@@ -2,7 +2,6 @@
 // The search of nook tune on grids whose every value is known.
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/random.h"
 #include "study/tune.h"
 #include "study/tune_search.h"
@@ -135,11 +134,8 @@ Outcome outcomeOf(bool of_time, OverLevels over, double part, double noise, uint
 		for (const double share : {0.05, 0.3, 0.6, 0.95})
 		{
 			Grid grid(seed, part, noise);
-			std::vector<double> bounds;
-			for (std::size_t i = 0; i < grid.size(); ++i)
-			{
-				bounds.push_back(of_time ? grid.time(i) : grid.error(i, over));
-			}
+			std::vector<double> bounds =
+				listOf(grid.size(), [&](std::size_t i) { return of_time ? grid.time(i) : grid.error(i, over); });
 			std::sort(bounds.begin(), bounds.end());
 			const double bound = 1.05 * bounds[static_cast<std::size_t>(share * static_cast<double>(bounds.size()))];
 			TuneGoal goal;

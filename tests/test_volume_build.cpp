@@ -5,7 +5,6 @@
 #include "small_volumes.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/math.h"
 #include "core/random.h"
 #include "scene/builtin.h"

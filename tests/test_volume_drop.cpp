@@ -4,7 +4,6 @@
 #include "small_levels.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/random.h"
 #include "scene/builtin.h"
 #include "volume/build.h"

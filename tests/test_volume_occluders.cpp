@@ -131,11 +131,8 @@ glm::dvec3 doubleAreaOf(std::span<const glm::dvec3> corners)
 
 double areaOf(const nook::Occluders& occluders)
 {
-	double sum = 0.0;
-	for (const nook::Occluder& polygon : occluders.polygons)
-	{
-		sum += 0.5 * glm::length(doubleAreaOf(cornersOf(occluders, polygon)));
-	}
+	const double sum = sumOver(occluders.polygons, [&](const nook::Occluder& polygon)
+							   { return 0.5 * glm::length(doubleAreaOf(cornersOf(occluders, polygon))); });
 	return sum;
 }
 

@@ -6,9 +6,7 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/file.h"
-#include "core/lists.h"
 #include "core/random.h"
 #include "core/text.h"
 #include "scene/load.h"
@@ -456,11 +454,7 @@ TEST_CASE("emit: the scene of a volume file is what its arrays hold", "[emit][vo
 		{
 			corners.insert({p.x, p.y, p.z});
 		}
-		std::size_t found = 0;
-		for (const glm::dvec3 p : level.positions)
-		{
-			found += corners.count({p.x, p.y, p.z});
-		}
+		const std::size_t found = sumOver(level.positions, [&](const glm::dvec3 p) { return corners.count({p.x, p.y, p.z}); });
 		CHECK(found == level.positions.size());
 
 		const VolumeFile prisms = volumeGlb(volumes, {VolumeLayout::prisms, false}, "test", "nook test", {});

@@ -5,7 +5,6 @@
 #include "testing.h"
 #include "vulkan_device.h"
 
-#include "core/lists.h"
 #include "emit/module.h"
 #include "shade/aov_gl_parts.h"
 

@@ -92,9 +92,7 @@ nook_block blockFor(const glm::dmat4& projection, const nook_settings& settings)
 
 std::vector<glm::vec4> fourOf(const std::vector<glm::vec3>& normals, bool from_zero)
 {
-	const std::vector<glm::vec4> four =
-		mapped(normals, [&](const glm::vec3& normal) { return glm::vec4(from_zero ? 0.5F * normal + 0.5F : normal, 0.0F); });
-	return four;
+	return mapped(normals, [&](const glm::vec3& normal) { return glm::vec4(from_zero ? 0.5F * normal + 0.5F : normal, 0.0F); });
 }
 
 std::vector<float> drawn(GlPass& pass, const GlTexture& depths, const GlTexture& normals, const nook_block& block)

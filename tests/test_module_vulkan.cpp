@@ -326,14 +326,14 @@ TEST_CASE("module: HLSL and Vulkan's GLSL compute one picture, that of nook shad
 		}
 		settings.target = GlslTarget::hlsl60;
 		// A GPU's compiler joins multiplications and additions its own way.
-		const float most = vulkan.name().find("llvmpipe") != std::string::npos ? 1e-6F : 2e-5F;
-		const float found = largestDifference(glsl, computed(gbuffer, settings).visibility);
-		CAPTURE(1e6F * found);
+		const double most = vulkan.name().find("llvmpipe") != std::string::npos ? 1e-6 : 2e-5;
+		const double found = differenceOf(glsl, computed(gbuffer, settings).visibility).worst;
+		CAPTURE(1e6 * found);
 		CHECK(found <= most);
 		if (vulkan.draws() && (one.shade.method == ShadeMethod::vo_line || one.shade.method == ShadeMethod::vo_point))
 		{
 			settings.main = ModuleMain::fragment;
-			CHECK(largestDifference(glsl, computed(gbuffer, settings).visibility) <= most);
+			CHECK(differenceOf(glsl, computed(gbuffer, settings).visibility).worst <= most);
 		}
 	}
 }
@@ -357,9 +357,9 @@ TEST_CASE("module: macros read the tile from another texture", "[emit]")
 	settings.textures = ModuleTextures::fixed; // HLSL always has the macros
 	const std::string hlsl = "[[vk::binding(13, 0)]] Texture2D<float4> own;\n"
 							 "#define NOOK_VO_LINE_TILE(row, i) own.Load(int3(row, i, 0))\n";
-	CHECK(largestDifference(computed(gbuffer, settings, 1, hlsl).visibility, expected) <= 1e-6F);
-	CHECK(largestDifference(computed(gbuffer, settings, 1, "// none").visibility, expected) >
-		  0.1F); // the tile's own binding has depths
+	CHECK(differenceOf(computed(gbuffer, settings, 1, hlsl).visibility, expected).worst <= 1e-6);
+	CHECK(differenceOf(computed(gbuffer, settings, 1, "// none").visibility, expected).worst >
+		  0.1); // the tile's own binding has depths
 }
 
 TEST_CASE("module: spirv-cross translates HLSL's SPIR-V to MSL", "[emit]")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Polygons made from triangles: equal area, convex, and independent of the tessellation.
 #include "level_files.h"
+#include "testing.h"
 
 #include "core/math.h"
 #include "core/random.h"
@@ -10,22 +11,8 @@
 #include "volume/surface.h"
 #include "volume/volumes.h"
 
-#include <catch2/catch.hpp>
-
-#include <glm/geometric.hpp>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <string>
-#include <vector>
-
 namespace
 {
-
-using nook::Level;
-using nook::Occluding;
 
 const nook::RunSettings kRun{2, {}};
 

@@ -4,6 +4,7 @@
 
 #include "methods/block.h"
 #include "pattern/recipe.h"
+#include "shade/shade.h"
 
 namespace nook::test
 {
@@ -15,6 +16,11 @@ inline ShadeSamples samplesFor(ShadeMethod method, int count)
 	recipe.count = count;
 	recipe.starts = 2;
 	return samplesOf(method, {generatePattern(recipe)});
+}
+
+inline std::vector<float> visibilityOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
+{
+	return shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
 }
 
 inline ShadeSettings statVo(int layers, int cell_px = 1, bool quadrants = false)

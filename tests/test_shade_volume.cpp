@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volumetric obscurance with further features: areas, thickness, falloff, two radii, pairs, bands.
 #include "picture_errors.h"
+#include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
@@ -33,11 +34,6 @@ Pattern many(Domain domain)
 	recipe.count = 512;
 	recipe.method = Method::vogel;
 	return generatePattern(recipe);
-}
-
-std::vector<float> visibilityOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
-{
-	return shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
 }
 
 // Numerical integral of the falloff over the open part of a line.

@@ -18,7 +18,6 @@
 #include "core/text.h"
 #include "core/words.h"
 #include "scene/camera_choice.h"
-#include "scene/embree.h"
 #include "scene/ray_triangle.h"
 
 #include <glm/common.hpp>
@@ -31,6 +30,15 @@
 #include <cstdlib>
 #include <limits>
 #include <string_view>
+
+// Embree 4, or 3 with the names of 4.
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+using RTCRayQueryContext = RTCIntersectContext;
+#define rtcInitRayQueryContext rtcInitIntersectContext
+#endif
 
 namespace nook
 {
@@ -159,6 +167,24 @@ bool collect(RTCPointQueryFunctionArguments* arguments)
 	const std::vector<uint32_t>& of = arguments->geomID == tracing::kOpaqueId ? *nearby.opaque : *nearby.masked;
 	nearby.triangles.push_back(of[arguments->primID]);
 	return false;
+}
+
+// It selects code by the processor; nook's output does not depend on the choice. The environment variable NOOK_TEST_ISA (sse2,
+// sse4.2, avx, avx2, avx512) forces an instruction set, so that a test can check that all give the same result. Throws Error: usage
+// for another name, runtime if the processor lacks it.
+RTCDevice newEmbreeDevice()
+{
+	const char* const isa = std::getenv("NOOK_TEST_ISA");
+	// Embree itself ignores unknown names.
+	constexpr std::array<std::string_view, 5> kSets{"sse2", "sse4.2", "avx", "avx2", "avx512"};
+	if (isa != nullptr && std::find(kSets.begin(), kSets.end(), isa) == kSets.end())
+	{
+		refuseInput("NOOK_TEST_ISA", "'" + oneLine(isa) + "'", "sse2, sse4.2, avx, avx2 or avx512", ExitCode::usage);
+	}
+	RTCDevice device = rtcNewDevice(isa == nullptr ? "" : ("isa=" + std::string(isa)).c_str());
+	refuseInputIf(device == nullptr, isa == nullptr ? "Embree" : "NOOK_TEST_ISA", "no device",
+				  "instructions that Embree and this processor have", ExitCode::runtime);
+	return device;
 }
 
 constexpr double kCellsOfReach = 4.0; // smaller cells are tighter, but there are more of them
@@ -533,21 +559,6 @@ double Tracer::error() const
 const Bounds& Tracer::bounds() const
 {
 	return m_data->bounds;
-}
-
-RTCDevice newEmbreeDevice()
-{
-	const char* const isa = std::getenv("NOOK_TEST_ISA");
-	// Embree itself ignores unknown names.
-	constexpr std::array<std::string_view, 5> kSets{"sse2", "sse4.2", "avx", "avx2", "avx512"};
-	if (isa != nullptr && std::find(kSets.begin(), kSets.end(), isa) == kSets.end())
-	{
-		refuseInput("NOOK_TEST_ISA", "'" + oneLine(isa) + "'", "sse2, sse4.2, avx, avx2 or avx512", ExitCode::usage);
-	}
-	RTCDevice device = rtcNewDevice(isa == nullptr ? "" : ("isa=" + std::string(isa)).c_str());
-	refuseInputIf(device == nullptr, isa == nullptr ? "Embree" : "NOOK_TEST_ISA", "no device",
-				  "instructions that Embree and this processor have", ExitCode::runtime);
-	return device;
 }
 
 // The rays.

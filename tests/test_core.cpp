@@ -9,7 +9,6 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/random.h"
-#include "core/remaining_time.h"
 
 #include <sys/wait.h>
 

@@ -4,7 +4,6 @@
 
 #include "core/error.h"
 #include "core/progress.h"
-#include "core/remaining_time.h"
 #include "pattern/recipe.h"
 
 #include <chrono>

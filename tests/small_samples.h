@@ -11,10 +11,7 @@ namespace nook::test
 
 inline ShadeSamples samplesFor(ShadeMethod method, int count)
 {
-	Recipe recipe;
-	recipe.domain = domainOf(method);
-	recipe.count = count;
-	recipe.starts = 2;
+	Recipe recipe{.domain = domainOf(method), .count = count, .starts = 2};
 	return samplesOf(method, {generatePattern(recipe)});
 }
 

@@ -21,8 +21,7 @@ GBuffer castOf(const Level& level, const View& view, int width, int height)
 
 AovSettings exact()
 {
-	AovSettings settings;
-	settings.target = AovTarget::r32f;
+	AovSettings settings{.target = AovTarget::r32f};
 	return settings;
 }
 

@@ -144,8 +144,7 @@ TEST_CASE("camera: depth from what a depth buffer holds", "[camera]")
 
 TEST_CASE("camera: the picture is the right way round", "[camera]")
 {
-	Lens lens;
-	lens.fov_y_rad = 0.5 * kPi;
+	Lens lens{.fov_y_rad = 0.5 * kPi};
 	const Projector projector(projectionOf(lens, 2.0), 200, 100);
 	// Half the height at 45°: the upper edge shows y = depth, the right one x = 2 × depth.
 	CHECK(projector.pixelOf({0.0, 3.0, -3.0}).y == Approx(0.0).margin(1e-12));

@@ -384,8 +384,7 @@ TEST_CASE("measure: pixels that do not count", "[compare]")
 		counted[i] = 0;
 		test.values[i] = 1.0F - test.values[i];
 	}
-	CompareSettings settings;
-	settings.counted = counted;
+	CompareSettings settings{.counted = counted};
 	const Comparison c = compared(test, reference, settings);
 	CHECK(c.pixels == 40 * 29);
 	CHECK(c.max == 0.0);

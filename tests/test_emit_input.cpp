@@ -166,9 +166,7 @@ TEST_CASE("JSON input: what is wrong is named", "[emit]")
 
 TEST_CASE("tile input: what is wrong is named", "[emit]")
 {
-	TileRecipe recipe;
-	recipe.size = 2;
-	recipe.kind = TileKind::random;
+	TileRecipe recipe{.size = 2, .kind = TileKind::random};
 	TileQuality quality;
 	quality.window = 0.0;
 	const std::string ours = tileJson(scatteredTile(Domain::disk, 2, 2, true), &recipe, quality, contextOf("nook tile"));
@@ -190,9 +188,7 @@ TEST_CASE("tile input: what is wrong is named", "[emit]")
 
 TEST_CASE("tile input: filters, frames and moves come back, and what is wrong with them is named", "[emit]")
 {
-	TileRecipe recipe;
-	recipe.size = 2;
-	recipe.filters = {tileFilterNamed("binomial:3"), tileFilterNamed("box:2")};
+	TileRecipe recipe{.size = 2, .filters = {tileFilterNamed("binomial:3"), tileFilterNamed("box:2")}};
 	recipe.filters[1].share = 2.5;
 	recipe.frames = 3;
 	recipe.moves = true;

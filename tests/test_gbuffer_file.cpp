@@ -262,8 +262,7 @@ TEST_CASE("scene: linear depth, distances, and what is sky", "[gbuffer]")
 
 	// Found by fuzzing: the smallest distance has a depth along the view that rounds to 0 in 32 bits.
 	Image near = foreign(3, 3, {"Z"}, std::vector<float>(9, std::numeric_limits<float>::denorm_min()));
-	Lens wide;
-	wide.fov_y_rad = 2.6;
+	Lens wide{.fov_y_rad = 2.6};
 	near.matrices[1] = matrixNamed("projection", projectionOf(wide, 1.0));
 	CHECK_THROWS_AS(readBack(near, import), Error);
 }

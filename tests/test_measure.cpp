@@ -13,11 +13,7 @@ namespace
 
 Pattern made(Domain domain, int count, Method method, bool symmetric = false)
 {
-	Recipe recipe;
-	recipe.domain = domain;
-	recipe.count = count;
-	recipe.method = method;
-	recipe.symmetric = symmetric;
+	Recipe recipe{.domain = domain, .count = count, .symmetric = symmetric, .method = method};
 	return generatePattern(recipe, {2, {}});
 }
 
@@ -230,8 +226,7 @@ TEST_CASE("quality: doubled points have infinite energy and no distance", "[meas
 TEST_CASE("quality: a tile's window on the grid and in closed form agree", "[measure]")
 {
 	const Pattern base = made(Domain::disk, 5, Method::refine);
-	TileRecipe recipe;
-	recipe.kind = TileKind::even;
+	TileRecipe recipe{.kind = TileKind::even};
 	const TileQuality q = measureTile(generateTile(base, recipe), base);
 	REQUIRE(q.window.has_value());
 	CHECK(*q.window == Approx(q.window_exact.value()).epsilon(0.02));

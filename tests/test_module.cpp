@@ -170,10 +170,7 @@ std::vector<glm::vec4> tileOf(const ModuleMethod& method)
 
 nook_block blockFor(const GBuffer& gbuffer, double radius)
 {
-	nook_settings settings;
-	settings.width = gbuffer.width_px;
-	settings.height = gbuffer.height_px;
-	settings.radius = radius;
+	nook_settings settings{.width = gbuffer.width_px, .height = gbuffer.height_px, .radius = radius};
 	double numbers[16];
 	std::memcpy(numbers, &gbuffer.view.projection, sizeof numbers);
 	nook_block block{};

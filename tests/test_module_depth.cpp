@@ -73,9 +73,7 @@ std::string shaderOf(const ModuleSettings& settings, const std::string& before =
 
 nook_settings settingsOf(const GBuffer& gbuffer)
 {
-	nook_settings settings;
-	settings.width = gbuffer.width_px;
-	settings.height = gbuffer.height_px;
+	nook_settings settings{.width = gbuffer.width_px, .height = gbuffer.height_px};
 	settings.first_row_ndc_y = 1; // rows start at the top
 	settings.radius = kRadius;
 	return settings;
@@ -116,11 +114,7 @@ std::vector<float> computed(const GBuffer& gbuffer, const DepthFormat& format)
 // The reason why a projection is rejected, for linear depth unless `device`.
 std::string faultOf(const glm::dmat4& projection, bool device = false, bool zero_to_one = false)
 {
-	nook_settings settings;
-	settings.width = 16;
-	settings.height = 9;
-	settings.device_depth = device;
-	settings.zero_to_one = zero_to_one;
+	nook_settings settings{.width = 16, .height = 9, .device_depth = device, .zero_to_one = zero_to_one};
 	double numbers[16];
 	std::memcpy(numbers, &projection, sizeof numbers);
 	nook_block block{};
@@ -321,9 +315,7 @@ TEST_CASE("module: each setting out of range is named", "[emit]")
 	std::memcpy(numbers, &view.projection, sizeof numbers);
 	const auto refused = [&](const char* name, auto change)
 	{
-		nook_settings settings;
-		settings.width = 16;
-		settings.height = 9;
+		nook_settings settings{.width = 16, .height = 9};
 		change(settings);
 		nook_block block{};
 		const char* const reason = nook_fill(block, numbers, settings);

@@ -438,9 +438,7 @@ TEST_CASE("module: tiles of several frames draw those of nook shade", "[emit]")
 TEST_CASE("module: slices of a tile over frames draw those of nook shade", "[emit]")
 {
 	const GBuffer gbuffer = builtinView("courtyard", 96, 54);
-	TileRecipe recipe;
-	recipe.filters = {tileFilterNamed("bilateral:5")};
-	recipe.frames = 4;
+	TileRecipe recipe{.filters = {tileFilterNamed("bilateral:5")}, .frames = 4};
 	const PatternTile tile = generateTile(slicePattern(2), recipe, RunSettings{2, {}});
 	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
 	{

@@ -16,10 +16,7 @@ const RunSettings kTwoThreads{2, {}};
 
 Recipe recipeOf(Domain domain, int count, Method method = Method::refine)
 {
-	Recipe recipe;
-	recipe.domain = domain;
-	recipe.count = count;
-	recipe.method = method;
+	Recipe recipe{.domain = domain, .count = count, .method = method};
 	return recipe;
 }
 

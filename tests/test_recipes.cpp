@@ -39,9 +39,7 @@ Scene cornell(int width_px, int height_px)
 
 ShadeSamples lines(int count)
 {
-	Recipe recipe;
-	recipe.domain = Domain::disk;
-	recipe.count = count;
+	Recipe recipe{.domain = Domain::disk, .count = count};
 	return samplesOf(ShadeMethod::vo_line, {generatePattern(recipe, {})});
 }
 

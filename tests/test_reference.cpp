@@ -56,8 +56,7 @@ void checkOcclusion(const Level& level, const ReferencePoint& point, ReferenceSe
 
 ReferenceSettings hard(double radius_m)
 {
-	ReferenceSettings settings;
-	settings.radius_m = radius_m;
+	ReferenceSettings settings{.radius_m = radius_m};
 	return settings;
 }
 
@@ -456,8 +455,7 @@ TEST_CASE("reference: a depth that is no length is refused by its pixel", "[refe
 	Level level = emptyLevel();
 	addQuad(level, {-1.0, -1.0, -2.0}, {2.0, 0.0, 0.0}, {0.0, 2.0, 0.0});
 	const Tracer tracer(level, {});
-	View view;
-	view.projection = projectionOf({}, 1.0);
+	View view{.projection = projectionOf({}, 1.0)};
 	for (const float depth : {1e-45F, 1e-13F, 1e13F, 1e30F})
 	{
 		GBuffer gbuffer = castGBuffer(tracer, view, 4, 4, NormalKind::geometric, {});

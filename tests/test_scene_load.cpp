@@ -637,8 +637,7 @@ TEST_CASE("volume: volumes of a cell are those of the level there, closed surfac
 TEST_CASE("bake: a cell's own vertices get the level's values, and they alone are written", "[bake]")
 {
 	const Parts parts("builtin:cave:5000", {{-10.0, -20.0, -10.0}, {10.0, 20.0, 10.0}}, 2.0);
-	BakeSettings settings;
-	settings.radius_m = 2.0;
+	BakeSettings settings{.radius_m = 2.0};
 	const Tracer whole(parts.whole, {});
 	const Tracer cell(parts.cell, {});
 	const VertexBake all = bakeVertices(whole, settings, {});

@@ -24,9 +24,7 @@ std::vector<Pattern> variantsFor(ShadeMethod method, int count)
 	recipe.count = count;
 	recipe.starts = 2;
 	recipe.order = Order::progressive;
-	TileRecipe tile;
-	tile.kind = TileKind::random;
-	tile.size = 2;
+	TileRecipe tile{.size = 2, .kind = TileKind::random};
 	return generateTile(generatePattern(recipe), tile, {}).variants;
 }
 

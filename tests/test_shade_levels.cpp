@@ -15,10 +15,7 @@ namespace
 
 ShadeSamples manyOf(ShadeMethod method, int count)
 {
-	Recipe recipe;
-	recipe.domain = domainOf(method);
-	recipe.count = count;
-	recipe.method = Method::vogel;
+	Recipe recipe{.domain = domainOf(method), .count = count, .method = Method::vogel};
 	return samplesOf(method, {generatePattern(recipe)});
 }
 

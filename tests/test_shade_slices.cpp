@@ -215,8 +215,7 @@ TEST_CASE("shade slices: of a tile, on the CPU and in OpenGL, one and several a 
 							 [](float a, float b) { return std::fabs(a - b) > 1.0F / 255.0F ? 1 : 0; }) <= 14);
 	for (const int count : {1, 3})
 	{
-		TileRecipe recipe;
-		recipe.size = 3;
+		TileRecipe recipe{.size = 3};
 		const ShadeSamples samples =
 			samplesOf(ShadeMethod::slices, generateTile(slicePattern(count), recipe, RunSettings{2, {}}).variants);
 		const Shaded cpu = shadeOnCpu(gbuffer, samples, settings, {2, {}});
@@ -234,10 +233,7 @@ TEST_CASE("shade slices: nearer to rays than horizon-based occlusion of as many 
 		const Level level = builtinLevel(name);
 		const Tracer tracer(level, {});
 		const GBuffer gbuffer = castGBuffer(tracer, viewOf(level.cameras[0], 240, 135), 240, 135, NormalKind::geometric, {});
-		ReferenceSettings reference;
-		reference.falloff = Falloff::linear;
-		reference.radius_m = 1.5;
-		reference.rays = 64;
+		ReferenceSettings reference{.falloff = Falloff::linear, .radius_m = 1.5, .rays = 64};
 		const std::vector<ReferenceValue> rays = referenceOfGBuffer(&tracer, gbuffer, reference, {2, {}});
 		ShadeSettings settings = settingsOf(3, 6, 1.5);
 		settings.filter = ShadeFilter::bilateral;

@@ -13,9 +13,7 @@ namespace
 
 Recipe recipeOf(Domain domain, int count)
 {
-	Recipe recipe;
-	recipe.domain = domain;
-	recipe.count = count;
+	Recipe recipe{.domain = domain, .count = count};
 	return recipe;
 }
 
@@ -197,10 +195,7 @@ TEST_CASE("tile: variants keep the symmetry of their base, and all kinds and siz
 	{
 		for (const TileKind kind : {TileKind::points, TileKind::even, TileKind::random})
 		{
-			TileRecipe settings;
-			settings.size = size;
-			settings.kind = kind;
-			settings.starts = kind == TileKind::points ? 1 : 0;
+			TileRecipe settings{.size = size, .kind = kind, .starts = kind == TileKind::points ? 1 : 0};
 			const PatternTile tile = generateTile(base, settings, RunSettings{2, {}});
 			REQUIRE(tile.variants.size() == static_cast<std::size_t>(size * size));
 			for (const Pattern& variant : tile.variants)
@@ -214,8 +209,7 @@ TEST_CASE("tile: variants keep the symmetry of their base, and all kinds and siz
 	for (const Domain domain : {Domain::ball, Domain::hemisphere})
 	{
 		const Pattern other = generatePattern(recipeOf(domain, 6));
-		TileRecipe settings;
-		settings.starts = 1;
+		TileRecipe settings{.starts = 1};
 		CHECK(generateTile(other, settings).variants.size() == 16);
 		settings.starts = 0;
 		settings.kind = TileKind::random;
@@ -253,8 +247,7 @@ TEST_CASE("tile: prefixes of ordered variants err less, and what is whole stays 
 		Recipe recipe = recipeOf(Domain::disk, 9);
 		recipe.symmetric = symmetric;
 		const Pattern base = generatePattern(recipe, RunSettings{2, {}});
-		TileRecipe settings;
-		settings.starts = 1;
+		TileRecipe settings{.starts = 1};
 		const PatternTile plain = generateTile(base, settings);
 		settings.progressive = true;
 		const PatternTile ordered = generateTile(base, settings);
@@ -284,19 +277,14 @@ TEST_CASE("tile: prefixes of ordered variants err less, and what is whole stays 
 		};
 		CHECK(errorOf(prefixes(ordered, 5), window) < 0.75 * errorOf(prefixes(plain, 5), window));
 	}
-	TileRecipe settings;
-	settings.progressive = true;
-	settings.kind = TileKind::even;
+	TileRecipe settings{.kind = TileKind::even, .progressive = true};
 	CHECK_THROWS(generateTile(generatePattern(recipeOf(Domain::disk, 4)), settings));
 }
 
 TEST_CASE("tile: more memory than may be taken is refused before work", "[pattern]")
 {
 	const Pattern base = generatePattern(recipeOf(Domain::disk, 4));
-	TileRecipe recipe;
-	recipe.size = 128;
-	recipe.filters = {tileFilterNamed("binomial:3")};
-	recipe.frames = 32;
+	TileRecipe recipe{.size = 128, .filters = {tileFilterNamed("binomial:3")}, .frames = 32};
 	const uint64_t need = tileMemory(recipe, base, 2);
 	CHECK_NOTHROW(checkTileSize(recipe, base, need, 2));
 	CHECK_NOTHROW(checkTileSize(recipe, base, 0, 2));
@@ -386,10 +374,7 @@ TEST_CASE("tile: very many samples are made by moments, about as good and the sa
 	Recipe spiral = recipeOf(Domain::disk, 200);
 	spiral.method = Method::vogel;
 	const Pattern base = generatePattern(spiral, RunSettings{2, {}});
-	TileRecipe recipe;
-	recipe.size = 3;
-	recipe.filters = {tileFilterNamed("binomial:3")};
-	recipe.frames = 4;
+	TileRecipe recipe{.size = 3, .filters = {tileFilterNamed("binomial:3")}, .frames = 4};
 	REQUIRE(stepsOfError(sharesOf(3, recipe.filters[0], {4, 0.1, {}}, 0), 200) > 0x1p24);
 	const PatternTile tile = generateTile(base, recipe, RunSettings{2, {}});
 	REQUIRE(tile.variants.size() == 36);
@@ -433,8 +418,7 @@ TEST_CASE("tile: slices are better behind a filter than those of the kernel, and
 	const auto [name, share] =
 		GENERATE(table<const char*, double>({{"box:3", 0.8}, {"binomial:3", 0.72}, {"bilateral:5", 1.0}, {"box:4", 1.0}}));
 	INFO(name);
-	TileRecipe recipe;
-	recipe.filters = {tileFilterNamed(name)};
+	TileRecipe recipe{.filters = {tileFilterNamed(name)}};
 	const TileShares shares = sharesOf(4, recipe.filters[0]);
 	const PatternTile tile = generateTile(slicePattern(1), recipe, RunSettings{2, {}});
 	CHECK(std::sqrt(errorOf(tile, shares)) <= share * std::sqrt(errorOf(kernels, shares)));
@@ -468,8 +452,7 @@ TEST_CASE("tile: larger tiles are no worse than copies of smaller ones, and ever
 			double least = std::numeric_limits<double>::infinity();
 			for (const int size : {2, 4, 8})
 			{
-				TileRecipe recipe;
-				recipe.size = size;
+				TileRecipe recipe{.size = size};
 				if (*filter != '\0')
 				{
 					recipe.filters = {tileFilterNamed(filter)};
@@ -490,11 +473,7 @@ TEST_CASE("tile: larger tiles are no worse than copies of smaller ones, and ever
 TEST_CASE("tile: copies of a smaller tile where frames move it, and transforms that make the variants", "[pattern]")
 {
 	const RunSettings run{2, {}};
-	TileRecipe recipe;
-	recipe.size = 6;
-	recipe.filters = {tileFilterNamed("box:2")};
-	recipe.frames = 4;
-	recipe.moves = true;
+	TileRecipe recipe{.size = 6, .filters = {tileFilterNamed("box:2")}, .frames = 4, .moves = true};
 	const PatternTile moved = generateTile(slicePattern(1), recipe, run);
 	CHECK((moved.variants.size() == 36 && moved.moves.size() == 4));
 	recipe = {};
@@ -623,9 +602,7 @@ TEST_CASE("tile: over frames points and directions gain as lines do", "[pattern]
 	for (const Domain domain : {Domain::ball, Domain::hemisphere})
 	{
 		const Pattern base = generatePattern(recipeOf(domain, 5), RunSettings{2, {}});
-		TileRecipe recipe;
-		recipe.filters = {tileFilterNamed("box:4")};
-		recipe.frames = 16;
+		TileRecipe recipe{.filters = {tileFilterNamed("box:4")}, .frames = 16};
 		const PatternTile tile = generateTile(base, recipe, RunSettings{2, {}});
 		const TileTime time{16, 0.1, {}};
 		const double one = std::sqrt(errorOf(tile, sharesOf(4, recipe.filters[0], time)));

@@ -216,10 +216,7 @@ TEST_CASE("vicinity: the same visibility by a tree of what is near", "[reference
 		{
 			for (const Falloff falloff : {Falloff::hard, Falloff::linear})
 			{
-				ReferenceSettings settings;
-				settings.radius_m = radius_m;
-				settings.falloff = falloff;
-				settings.rays = 64;
+				ReferenceSettings settings{.falloff = falloff, .radius_m = radius_m, .rays = 64};
 				const std::optional<Vicinity> reach = reachOf(level, gbuffer, settings);
 				REQUIRE(reach);
 				std::size_t kept = 0;
@@ -238,8 +235,7 @@ TEST_CASE("vicinity: the same visibility by a tree of what is near", "[reference
 				}
 			}
 		}
-		ReferenceSettings settings;
-		settings.measure = ReferenceMeasure::hemisphere;
+		ReferenceSettings settings{.measure = ReferenceMeasure::hemisphere};
 		CHECK(!reachOf(level, gbuffer, settings));
 	}
 }

@@ -539,8 +539,7 @@ TEST_CASE("trim: no receiver loses more than it may, fragments are saved, thread
 {
 	const Level level = builtinLevel("suburb");
 	const Tracer tracer(level, {});
-	TrimSettings settings;
-	settings.share = 0.1;
+	TrimSettings settings{.share = 0.1};
 	const std::vector<ReferencePoint> receivers = sampleReceivers(tracer, 1.5, {2, 2000, 6000, 0, 1}, {2, {}});
 	const VolumeSet whole = volumesOf(level, 1.5, 64);
 	VolumeSet cut = whole;
@@ -598,8 +597,7 @@ TEST_CASE("trim: what few receivers see keeps its reach; a cap leaves receivers 
 	VolumeSet set = squares();
 	const std::vector<ReferencePoint> three(3, ReferencePoint{{0.5, 0.5, 1.9}, {0.0, 0.0, -1.0}, 0.0});
 	const std::vector<ReferencePoint> four(4, three[0]);
-	TrimSettings settings;
-	settings.share = 1.0;
+	TrimSettings settings{.share = 1.0};
 	CHECK(trimVolumes(set, three, settings, {}).trimmed == 0);
 	CHECK((set.occluders.polygons[0].reach == 1.0F && set.occluders.polygons[1].reach == 1.0F));
 	CHECK(trimVolumes(set, four, settings, {}).trimmed == 1);
@@ -621,8 +619,7 @@ TEST_CASE("trim: volumes that no receiver was asked about are asked about what t
 	const Level level = builtinLevel("cornell");
 	const Tracer tracer(level, {});
 	VolumeSet set = volumesOf(level, 0.4, 8);
-	TrimSettings settings;
-	settings.share = 0.5;
+	TrimSettings settings{.share = 0.5};
 	CHECK(trimVolumes(set, std::span<const ReferencePoint>(), settings, {}).receivers == 0);
 	const TrimCounts counts = trimVolumes(set, std::span<const ReferencePoint>(), settings, {}, &tracer);
 	CHECK(counts.receivers > 100);

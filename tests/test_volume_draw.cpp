@@ -438,10 +438,7 @@ TEST_CASE("compensation: a curve that is worse in views kept out is refused", "[
 	set.distance_m = 1.0;
 	set.exact_bounds = true;
 	set.occluders = occludersOf(level, {}, {}).occluders;
-	CompensateSettings settings;
-	settings.rays = 64;
-	settings.kept_out = {2, 2, 200};
-	settings.pictures = {2, 0, 200};
+	CompensateSettings settings{.rays = 64, .pictures = {2, 0, 200}, .kept_out = {2, 2, 200}};
 	for (const CurveMeasure measure : {CurveMeasure::eq14, CurveMeasure::rmse})
 	{
 		settings.measure = measure;
@@ -468,9 +465,7 @@ TEST_CASE("compensation: the points of pictures are a pixel apart, and on surfac
 {
 	const Level level = builtinLevel("cornell");
 	const Tracer tracer(level, {});
-	PictureSettings settings;
-	settings.views = 2;
-	settings.per_view = 100;
+	PictureSettings settings{.views = 2, .per_view = 100};
 	const std::vector<PictureTriple> triples = pictureTriples(tracer, settings, {});
 	REQUIRE(triples.size() > 100);
 	std::size_t near_by = 0;

@@ -319,8 +319,7 @@ TEST_CASE("volume: duplicates go, and a triangle with its back becomes one polyg
 	maker.level.meshes = {{"made", 0, 3}};
 	for (const nook::Sides sides : {nook::Sides::automatic, nook::Sides::oriented})
 	{
-		nook::OccluderSettings settings;
-		settings.sides = sides;
+		nook::OccluderSettings settings{.sides = sides};
 		const Occluding merged = occluders(maker.level, settings);
 		REQUIRE(merged.counts.polygons == 1);
 		REQUIRE(merged.counts.duplicates == 1);
@@ -333,8 +332,7 @@ TEST_CASE("volume: closed surfaces are oriented; sheets, rooms and masks have tw
 {
 	const auto twoSided = [](const Level& level, nook::Sides sides = nook::Sides::automatic)
 	{
-		nook::OccluderSettings settings;
-		settings.sides = sides;
+		nook::OccluderSettings settings{.sides = sides};
 		return occluders(level, settings).counts.two_sided;
 	};
 	Maker box;
@@ -465,8 +463,7 @@ TEST_CASE("volume: what is not in one plane is not merged", "[volume][occluders]
 		Maker maker;
 		maker.grid(
 			2, [&](double u, double v) { return glm::dvec3(u, v, u == 0.5 ? bend_m : 0.0); }, everywhere);
-		nook::OccluderSettings settings;
-		settings.sides = nook::Sides::oriented;
+		nook::OccluderSettings settings{.sides = nook::Sides::oriented};
 		REQUIRE(occluders(maker.level, settings).counts.polygons == (bend_m < 1e-4 ? 1U : 2U));
 	}
 	Maker maker; // a fine sphere: neighbours are nearly coplanar, distant ones are not
@@ -479,8 +476,7 @@ TEST_CASE("volume: what is not in one plane is not merged", "[volume][occluders]
 			return glm::dvec3(around.cos * up.cos, up.sin, around.sin * up.cos);
 		},
 		everywhere);
-	nook::OccluderSettings settings;
-	settings.distance_m = 10.0;
+	nook::OccluderSettings settings{.distance_m = 10.0};
 	const Occluding merged = occluders(maker.level, settings);
 	requireSound(merged.occluders, 1e-3);
 	REQUIRE(merged.counts.polygons > 100);
@@ -514,8 +510,7 @@ TEST_CASE("volume: a masked polygon's alpha is that of its own part of the textu
 	const Occluding whole = occluders(maker.level);
 	REQUIRE(whole.counts.polygons == 1); // one texture mapping: merged
 	REQUIRE(whole.occluders.polygons[0].alpha == Approx(0.75).margin(0.005));
-	nook::OccluderSettings gaps;
-	gaps.gap_halvings = 4;
+	nook::OccluderSettings gaps{.gap_halvings = 4};
 	const Occluding merged = occluders(maker.level, gaps);
 	REQUIRE(merged.counts.uncut == merged.counts.polygons);
 	double solid = 0.0;
@@ -533,8 +528,7 @@ TEST_CASE("volume: a masked polygon's alpha is that of its own part of the textu
 	REQUIRE(net.counts.polygons == 1);
 	REQUIRE(net.occluders.polygons[0].alpha == Approx(0.5).margin(0.02));
 	maker.level.masks[0] = mask;
-	nook::OccluderSettings single;
-	single.merge = false;
+	nook::OccluderSettings single{.merge = false};
 	const Occluding cut = occluders(maker.level, single); // the column from 0 to 1/4 is gone, except for the line with mixed alpha
 	REQUIRE(cut.counts.polygons + cut.counts.clear == 32);
 	REQUIRE(cut.counts.clear + static_cast<uint64_t>(std::count_if(cut.occluders.polygons.begin(), cut.occluders.polygons.end(),
@@ -603,8 +597,7 @@ TEST_CASE("volume: built-in levels keep their area, on any number of threads", "
 		const Occluding cut = nook::occludersOf(level, {}, kRun);
 		requireSound(cut.occluders, 1e-4);
 		REQUIRE(areaOf(cut.occluders) == Approx(areaOf(level)).epsilon(1e-6));
-		nook::OccluderSettings settings;
-		settings.extent = 0.0;
+		nook::OccluderSettings settings{.extent = 0.0};
 		const Occluding alone = nook::occludersOf(level, settings, {1, {}});
 		REQUIRE(alone.occluders.corners == merged.occluders.corners);
 		REQUIRE(std::equal(alone.occluders.polygons.begin(), alone.occluders.polygons.end(), merged.occluders.polygons.begin(),
@@ -617,8 +610,7 @@ TEST_CASE("volume: built-in levels keep their area, on any number of threads", "
 TEST_CASE("volume: without merging there is one polygon a triangle", "[volume][occluders]")
 {
 	const Level level = nook::builtinLevel("cornell");
-	nook::OccluderSettings settings;
-	settings.merge = false;
+	nook::OccluderSettings settings{.merge = false};
 	const Occluding single = occluders(level, settings);
 	REQUIRE(single.counts.polygons == level.triangles.size());
 	for (std::size_t i = 0; i < level.triangles.size(); ++i)

@@ -158,10 +158,8 @@ TEST_CASE("module: HLSL and Vulkan's GLSL draw the volumes and masks of nook sha
 		const GBuffer gbuffer = castGBuffer(tracer, view, 64, 48, NormalKind::geometric, {});
 		for (const int directions : within ? std::vector<int>{0} : std::vector<int>{0, 64}) // drivers take long to compile masks
 		{
-			AovSettings settings;
-			settings.mask = directions > 0;
-			settings.directions = std::max(directions, kLeastDirections);
-			settings.target = AovTarget::r32f;
+			AovSettings settings{
+				.mask = directions > 0, .directions = std::max(directions, kLeastDirections), .target = AovTarget::r32f};
 			const std::vector<float> expected = aovOnCpu(gbuffer, set, settings, {2, {}}).shaded.visibility;
 			const std::vector<float> glsl = drawnVolumes(gbuffer, set, GlslTarget::vulkan, directions);
 			CAPTURE(anyDevice().name(), within, directions, differenceOf(expected, glsl).worst);

@@ -208,8 +208,7 @@ constexpr double kVerticesPerTriangle = 0.75; // with values of their own, as in
 
 WorkFacts factsOf(const ParsedCommand& parsed, const std::string& folder, const std::vector<std::string>& outputs, PixelsOf& pixels)
 {
-	WorkFacts facts;
-	facts.verb = parsed.name;
+	WorkFacts facts{.verb = parsed.name};
 	facts.triangles = sumOver(parsed.values("LEVEL"), [&folder](const std::string& level) { return trianglesOf(folder, level); });
 	for (const char* option : {"--gbuffer", "FILE.exr", "FILE"})
 	{

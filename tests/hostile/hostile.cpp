@@ -621,7 +621,7 @@ int main(int argc, char** argv)
 			<< "usage: nook_hostile NOOK CODES [--all] [--share N] [--slow FACTOR] [--record] [--only GROUP] [--write FOLDER]\n";
 		return 1;
 	}
-	const double memory = memorySlowness();
+	const double memory = nook::hostile::memorySlowness();
 	if (memory > 1.0)
 	{
 		std::printf("memory comes %.1f times slower than a second a GB here: so much longer may a file take\n", memory);

@@ -28,8 +28,7 @@ inline std::string bakedGlb(const Level& level, std::string_view generator, cons
 
 inline BakeSettings within(double radius_m)
 {
-	BakeSettings settings;
-	settings.radius_m = radius_m;
+	BakeSettings settings{.radius_m = radius_m};
 	return settings;
 }
 

@@ -6,7 +6,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 
 namespace nook
 {

@@ -68,10 +68,7 @@ inline EmitContext contextOf(const std::string& command)
 
 inline Recipe recipeOf(const Pattern& pattern)
 {
-	Recipe recipe;
-	recipe.domain = pattern.domain;
-	recipe.count = static_cast<int>(pattern.count());
-	recipe.seed = 4000000000U;
+	Recipe recipe{.domain = pattern.domain, .count = static_cast<int>(pattern.count()), .seed = 4000000000U};
 	return recipe;
 }
 

@@ -220,14 +220,18 @@ public:
 		root.add("Connections");
 	}
 
-	FbxTestNode& object(const std::string& type, int64_t id, const std::string& name, const std::string& kind)
+	// Connected to `whole`, if that is given.
+	FbxTestNode& object(const std::string& type, int64_t id, const std::string& name, const std::string& kind, int64_t whole = -1)
 	{
+		if (whole >= 0)
+		{
+			connect(id, whole);
+		}
 		return root.child("Objects").add(type, {id, type + "::" + name, kind});
 	}
 	FbxTestNode& model(int64_t id, const std::string& name, int64_t parent = 0, const std::string& kind = "Mesh")
 	{
-		connect(id, parent);
-		return object("Model", id, name, kind);
+		return object("Model", id, name, kind, parent);
 	}
 	void connect(int64_t part, int64_t whole, const std::string& property = "")
 	{
@@ -242,10 +246,9 @@ public:
 	FbxTestNode& mesh(int64_t id, const std::string& name, const std::vector<double>& points, std::vector<int32_t> corners,
 					  int64_t node)
 	{
-		FbxTestNode& made = object("Geometry", id, name, "Mesh");
+		FbxTestNode& made = object("Geometry", id, name, "Mesh", node);
 		made.add("Vertices", {points});
 		made.add("PolygonVertexIndex", {std::move(corners)});
-		connect(id, node);
 		return made;
 	}
 	// A box about the origin.

@@ -31,6 +31,29 @@ template <class A, class B> double rmseOf(const std::vector<A>& a, const std::ve
 	return std::sqrt(squares / static_cast<double>(a.size()));
 }
 
+struct Difference
+{
+	double mean = 0.0;
+	double signed_mean = 0.0;
+	double worst = 0.0;
+	double beyond = 0.0; // fraction of the pixels that differ by more than 1/255
+};
+
+inline Difference differenceOf(const std::vector<float>& a, const std::vector<float>& b)
+{
+	REQUIRE(a.size() == b.size());
+	Difference result;
+	for (std::size_t i = 0; i < a.size(); ++i)
+	{
+		const auto d = static_cast<double>(a[i] - b[i]);
+		result.mean += std::fabs(d) / static_cast<double>(a.size());
+		result.signed_mean += d / static_cast<double>(a.size());
+		result.worst = std::fmax(result.worst, std::fabs(d));
+		result.beyond += std::fabs(d) <= 1.0 / 255.0 ? 0.0 : 1.0 / static_cast<double>(a.size());
+	}
+	return result;
+}
+
 // One picture drawn in two ways: close everywhere, except for one pixel in a thousand, where a comparison may go either way.
 inline void checkSamePicture(const std::vector<float>& a, const std::vector<float>& b, double most_off = 1e-3)
 {

@@ -2,6 +2,7 @@
 // One view through projections of every kind, and depths and normals quantised to formats of few bits.
 #pragma once
 
+#include "picture_errors.h"
 #include "small_views.h"
 #include "testing.h"
 
@@ -73,11 +74,8 @@ inline float deviceOf(double depth, const Convention& convention, int bits)
 
 inline std::vector<float> devicesOf(const GBuffer& gbuffer, const Convention& convention, int bits)
 {
-	std::vector<float> devices;
-	for (const float depth : gbuffer.depth)
-	{
-		devices.push_back(deviceOf(static_cast<double>(depth), convention, bits));
-	}
+	const std::vector<float> devices =
+		mapped(gbuffer.depth, [&](const float depth) { return deviceOf(static_cast<double>(depth), convention, bits); });
 	return devices;
 }
 
@@ -125,28 +123,6 @@ inline GBuffer withNormals(const GBuffer& gbuffer, int bits)
 		}
 	}
 	return other;
-}
-
-struct Difference
-{
-	double mean = 0.0;
-	double signed_mean = 0.0;
-	double worst = 0.0;
-	double beyond = 0.0; // fraction of the pixels that differ by more than 1/255
-};
-
-inline Difference differenceOf(const std::vector<float>& a, const std::vector<float>& b)
-{
-	Difference result;
-	for (std::size_t i = 0; i < a.size(); ++i)
-	{
-		const auto d = static_cast<double>(a[i] - b[i]);
-		result.mean += std::fabs(d) / static_cast<double>(a.size());
-		result.signed_mean += d / static_cast<double>(a.size());
-		result.worst = std::fmax(result.worst, std::fabs(d));
-		result.beyond += std::fabs(d) > 1.0 / 255.0 ? 1.0 / static_cast<double>(a.size()) : 0.0;
-	}
-	return result;
 }
 
 } // namespace nook::test

@@ -115,4 +115,18 @@ inline void addSphere(Level& level, glm::dvec3 centre, double radius_m, int ring
 	}
 }
 
+inline void checkNear(glm::dvec3 found, glm::dvec3 expected, double tolerance = 1e-9)
+{
+	INFO("found " << found.x << " " << found.y << " " << found.z);
+	INFO("expected " << expected.x << " " << expected.y << " " << expected.z);
+	CHECK(glm::distance(found, expected) <= tolerance);
+}
+
+inline void checkBox(const Level& level, glm::dvec3 least, glm::dvec3 most)
+{
+	const Bounds bounds = boundsOf(level);
+	checkNear(bounds.least, least);
+	checkNear(bounds.most, most);
+}
+
 } // namespace nook::test

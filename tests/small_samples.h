@@ -4,17 +4,20 @@
 
 #include "methods/block.h"
 #include "pattern/recipe.h"
+#include "shade/shade.h"
 
 namespace nook::test
 {
 
 inline ShadeSamples samplesFor(ShadeMethod method, int count)
 {
-	Recipe recipe;
-	recipe.domain = domainOf(method);
-	recipe.count = count;
-	recipe.starts = 2;
+	Recipe recipe{.domain = domainOf(method), .count = count, .starts = 2};
 	return samplesOf(method, {generatePattern(recipe)});
+}
+
+inline std::vector<float> visibilityOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
+{
+	return shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
 }
 
 inline ShadeSettings statVo(int layers, int cell_px = 1, bool quadrants = false)

@@ -34,8 +34,7 @@ inline GBuffer planeAt(const glm::dmat4& projection, int width, int height, doub
 
 inline Lens lensOf(double fov_deg)
 {
-	Lens lens;
-	lens.fov_y_rad = fov_deg * kPi / 180.0;
+	Lens lens{.fov_y_rad = fov_deg * kPi / 180.0};
 	if (fov_deg == 0.0)
 	{
 		lens.orthographic = true;

@@ -24,8 +24,7 @@ public:
 		}
 		m_path = name;
 	}
-	TemporaryFolder(const TemporaryFolder&) = delete;
-	TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+	TemporaryFolder& operator=(TemporaryFolder&&) = delete;
 
 	~TemporaryFolder()
 	{

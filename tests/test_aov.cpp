@@ -154,15 +154,9 @@ std::vector<float> sparseOf(const GBuffer& gbuffer, const std::vector<float>& vi
 std::vector<float> linearReference(const SmallView& view, double radius_m)
 {
 	const Tracer tracer(view.level, {});
-	ReferenceSettings settings;
-	settings.falloff = Falloff::linear;
-	settings.radius_m = radius_m;
-	settings.rays = 1000;
-	std::vector<float> visibility;
-	for (const ReferenceValue& value : referenceOfGBuffer(&tracer, view.gbuffer, settings, {4, {}}))
-	{
-		visibility.push_back(static_cast<float>(value.visibility));
-	}
+	ReferenceSettings settings{.falloff = Falloff::linear, .radius_m = radius_m, .rays = 1000};
+	const std::vector<float> visibility = mapped(referenceOfGBuffer(&tracer, view.gbuffer, settings, {4, {}}),
+												 [](const ReferenceValue& value) { return static_cast<float>(value.visibility); });
 	return visibility;
 }
 
@@ -282,8 +276,7 @@ TEST_CASE("aov: the curve is applied to the sum, not to each volume", "[aov]")
 {
 	const SmallView view = viewOfLevel("cornell");
 	const VolumeSet set = trianglesOf(view.level, 0.6);
-	AovSettings settings;
-	settings.compensate = false;
+	AovSettings settings{.compensate = false};
 	const std::vector<float> plain = aovOnCpu(view.gbuffer, set, settings, {4, {}}).shaded.visibility;
 	settings.compensate = true;
 	const std::vector<float> compensated = aovOnCpu(view.gbuffer, set, settings, {4, {}}).shaded.visibility;
@@ -411,8 +404,7 @@ TEST_CASE("aov: close to rays, and masks at less than half of the plain sum's er
 	{
 		const SmallView view = viewOfLevel(name);
 		const VolumeSet set = trianglesOf(view.level, 0.6);
-		AovSettings settings;
-		settings.compensate = false;
+		AovSettings settings{.compensate = false};
 		const std::vector<float> sum = aovOnCpu(view.gbuffer, set, settings, {4, {}}).shaded.visibility;
 		settings.mask = true;
 		settings.directions = 256;

@@ -7,10 +7,8 @@
 #include "bake/bake.h"
 #include "bake/probes.h"
 #include "bake/surface_samples.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/json_reader.h"
-#include "core/lists.h"
 #include "scene/gbuffer.h"
 #include "scene/level_glb.h"
 #include "scene/load.h"
@@ -25,6 +23,39 @@ double rmseOf(const Level& level, BakeSettings settings, BakeFit fit)
 	settings.fit = fit;
 	const Tracer tracer(level, {});
 	return checkBake(tracer, level, bakeVertices(tracer, settings, {}), settings, 1000, {}).rmse;
+}
+
+Level floorUnderBox()
+{
+	Level level = emptyLevel();
+	addQuad(level, {-2.0, 0.0, 2.0}, {4.0, 0.0, 0.0}, {0.0, 0.0, -4.0});
+	addBox(level, {-0.31, 0.0, -0.27}, {0.29, 0.5, 0.33});
+	return level;
+}
+
+// Number of vertices inside an edge where another triangle ends: a crack would open there.
+std::size_t verticesWithinEdges(const Level& level)
+{
+	std::size_t found = 0;
+	for (const glm::uvec3& t : level.triangles)
+	{
+		for (int edge = 0; edge < 3; ++edge)
+		{
+			const glm::dvec3 a = level.positions[t[edge]];
+			const glm::dvec3 way = level.positions[t[(edge + 1) % 3]] - a;
+			for (const glm::dvec3& p : level.positions)
+			{
+				const double share = glm::dot(p - a, way) / glm::dot(way, way);
+				found += share > 1e-6 && share < 1.0 - 1e-6 && glm::distance(p, a + share * way) < 1e-9 ? 1U : 0U;
+			}
+		}
+	}
+	return found;
+}
+
+double surfaceOf(const Level& level)
+{
+	return sumOver(areasOf(level));
 }
 
 } // namespace
@@ -450,11 +481,8 @@ TEST_CASE("bake: values are read again and drawn where the view shows what was b
 	TemporaryFolder folder;
 	Level level = emptyLevel();
 	addFloor(level, {-2.0, 0.0, -2.0}, 4.0, 8);
-	std::vector<float> values;
-	for (const glm::dvec3 position : level.positions)
-	{
-		values.push_back(static_cast<float>(0.5 + 0.2 * position.x));
-	}
+	const std::vector<float> values =
+		mapped(level.positions, [](const glm::dvec3 position) { return static_cast<float>(0.5 + 0.2 * position.x); });
 	const std::string path = folder / "a.glb";
 	writeFile(path, bakedGlb(level, "nook test", {values, false, {}, {}, {}, {}, {}}));
 	const LoadedLevel loaded = loadLevel(path, {}, {});
@@ -538,49 +566,6 @@ TEST_CASE("bake: probes agree with rays in the open, and those inside matter do 
 }
 
 // Triangles are split until the vertex bake meets the requested error.
-
-namespace
-{
-
-Level floorUnderBox()
-{
-	Level level = emptyLevel();
-	addQuad(level, {-2.0, 0.0, 2.0}, {4.0, 0.0, 0.0}, {0.0, 0.0, -4.0});
-	addBox(level, {-0.31, 0.0, -0.27}, {0.29, 0.5, 0.33});
-	return level;
-}
-
-// Number of vertices inside an edge where another triangle ends: a crack would open there.
-std::size_t verticesWithinEdges(const Level& level)
-{
-	std::size_t found = 0;
-	for (const glm::uvec3& t : level.triangles)
-	{
-		for (int edge = 0; edge < 3; ++edge)
-		{
-			const glm::dvec3 a = level.positions[t[edge]];
-			const glm::dvec3 way = level.positions[t[(edge + 1) % 3]] - a;
-			for (const glm::dvec3& p : level.positions)
-			{
-				const double share = glm::dot(p - a, way) / glm::dot(way, way);
-				found += share > 1e-6 && share < 1.0 - 1e-6 && glm::distance(p, a + share * way) < 1e-9 ? 1U : 0U;
-			}
-		}
-	}
-	return found;
-}
-
-double surfaceOf(const Level& level)
-{
-	double sum = 0.0;
-	for (const double area : areasOf(level))
-	{
-		sum += area;
-	}
-	return sum;
-}
-
-} // namespace
 
 TEST_CASE("bake: where few triangles may be left to split, it ends earlier, and no more are left", "[bake]")
 {

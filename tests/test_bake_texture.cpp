@@ -35,6 +35,59 @@ Level floorAndBoxWithCharts()
 	return level;
 }
 
+// A quad at y = 0 and its other side at the same place, of two triangles each; the last one of the back is wound like the front.
+// `differ` selects the sets, first and second, in which the back has other coordinates than the front; vertex v has the values v /
+// 8 and 1 − v / 8.
+std::string sheetGlb(const nlohmann::json& material, std::array<bool, 2> differ, bool second, bool baked)
+{
+	const std::array<glm::vec3, 4> corners{{{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}}};
+	std::string buffer;
+	for (std::size_t v = 0; v < 8; ++v)
+	{
+		append(buffer, corners[v % 4]);
+	}
+	for (const bool other : differ)
+	{
+		for (std::size_t v = 0; v < 8; ++v)
+		{
+			append(buffer, 0.5F * glm::vec2(corners[v % 4].x, corners[v % 4].z) + glm::vec2(other && v >= 4 ? 0.5F : 0.0F));
+		}
+	}
+	for (std::size_t v = 0; v < 8; ++v)
+	{
+		append(buffer, static_cast<float>(v) / 8.0F);
+	}
+	for (const unsigned index : {0U, 1U, 2U, 0U, 2U, 3U, 4U, 6U, 5U, 4U, 6U, 7U})
+	{
+		append(buffer, static_cast<uint16_t>(index));
+	}
+	nlohmann::json json = parseJson(R"({
+		"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+		"meshes": [{"name": "sheet", "primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 4, "material": 0}]}],
+		"accessors": [
+			{"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3", "min": [0, 0, 0], "max": [1, 0, 1]},
+			{"bufferView": 1, "componentType": 5126, "count": 8, "type": "VEC2"},
+			{"bufferView": 2, "componentType": 5126, "count": 8, "type": "VEC2"},
+			{"bufferView": 3, "componentType": 5126, "count": 8, "type": "SCALAR"},
+			{"bufferView": 4, "componentType": 5123, "count": 12, "type": "SCALAR"}],
+		"bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 96}, {"buffer": 0, "byteOffset": 96, "byteLength": 64},
+			{"buffer": 0, "byteOffset": 160, "byteLength": 64}, {"buffer": 0, "byteOffset": 224, "byteLength": 32},
+			{"buffer": 0, "byteOffset": 256, "byteLength": 24}],
+		"buffers": [{"byteLength": 280}]})",
+									"a.gltf");
+	json["materials"] = {material};
+	nlohmann::json& attributes = json["meshes"][0]["primitives"][0]["attributes"];
+	if (second)
+	{
+		attributes["TEXCOORD_1"] = 2;
+	}
+	if (baked)
+	{
+		attributes["_VISIBILITY"] = 3;
+	}
+	return glbBytes(json, buffer);
+}
+
 } // namespace
 
 TEST_CASE("bake: a texture agrees with rays, and charts do not bleed", "[bake]")
@@ -255,64 +308,6 @@ TEST_CASE("bake: a second set of coordinates is read where it is asked for, and 
 	CHECK(loadSecondUvs(folder / "a.glb", {}, plain, {}).empty());
 	CHECK(plain.uvs[5] == second[5]);
 }
-
-namespace
-{
-
-// A quad at y = 0 and its other side at the same place, of two triangles each; the last one of the back is wound like the front.
-// `differ` selects the sets, first and second, in which the back has other coordinates than the front; vertex v has the values v /
-// 8 and 1 − v / 8.
-std::string sheetGlb(const nlohmann::json& material, std::array<bool, 2> differ, bool second, bool baked)
-{
-	const std::array<glm::vec3, 4> corners{{{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}}};
-	std::string buffer;
-	for (std::size_t v = 0; v < 8; ++v)
-	{
-		append(buffer, corners[v % 4]);
-	}
-	for (const bool other : differ)
-	{
-		for (std::size_t v = 0; v < 8; ++v)
-		{
-			append(buffer, 0.5F * glm::vec2(corners[v % 4].x, corners[v % 4].z) + glm::vec2(other && v >= 4 ? 0.5F : 0.0F));
-		}
-	}
-	for (std::size_t v = 0; v < 8; ++v)
-	{
-		append(buffer, static_cast<float>(v) / 8.0F);
-	}
-	for (const unsigned index : {0U, 1U, 2U, 0U, 2U, 3U, 4U, 6U, 5U, 4U, 6U, 7U})
-	{
-		append(buffer, static_cast<uint16_t>(index));
-	}
-	nlohmann::json json = parseJson(R"({
-		"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-		"meshes": [{"name": "sheet", "primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 4, "material": 0}]}],
-		"accessors": [
-			{"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3", "min": [0, 0, 0], "max": [1, 0, 1]},
-			{"bufferView": 1, "componentType": 5126, "count": 8, "type": "VEC2"},
-			{"bufferView": 2, "componentType": 5126, "count": 8, "type": "VEC2"},
-			{"bufferView": 3, "componentType": 5126, "count": 8, "type": "SCALAR"},
-			{"bufferView": 4, "componentType": 5123, "count": 12, "type": "SCALAR"}],
-		"bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 96}, {"buffer": 0, "byteOffset": 96, "byteLength": 64},
-			{"buffer": 0, "byteOffset": 160, "byteLength": 64}, {"buffer": 0, "byteOffset": 224, "byteLength": 32},
-			{"buffer": 0, "byteOffset": 256, "byteLength": 24}],
-		"buffers": [{"byteLength": 280}]})",
-									"a.gltf");
-	json["materials"] = {material};
-	nlohmann::json& attributes = json["meshes"][0]["primitives"][0]["attributes"];
-	if (second)
-	{
-		attributes["TEXCOORD_1"] = 2;
-	}
-	if (baked)
-	{
-		attributes["_VISIBILITY"] = 3;
-	}
-	return glbBytes(json, buffer);
-}
-
-} // namespace
 
 TEST_CASE("bake: a second reading has the triangles of the first, whatever its coordinates", "[bake]")
 {

@@ -4,7 +4,6 @@
 #include "testing.h"
 
 #include "bake/unwrap.h"
-#include "core/error.h"
 #include "core/math.h"
 #include "core/random.h"
 
@@ -28,8 +27,7 @@ Unwrapped unwrapAll(const Level& level, const UnwrapSettings& settings, int thre
 
 UnwrapSettings across(int size_px)
 {
-	UnwrapSettings settings;
-	settings.size_px = size_px;
+	UnwrapSettings settings{.size_px = size_px};
 	return settings;
 }
 
@@ -166,8 +164,7 @@ TEST_CASE("unwrap: a sphere has few charts with little stretch, whatever the num
 TEST_CASE("unwrap: texels have the size that is asked for, on as many pages as they need", "[bake]")
 {
 	const Level level = sphere(8);
-	UnwrapSettings settings;
-	settings.texel_m = 0.02;
+	UnwrapSettings settings{.texel_m = 0.02};
 	const Unwrapped one = unwrapAll(level, settings);
 	checkCharts(level, one);
 	CHECK(one.size_px == 256); // 30000 texels, with margins more than 128 x 128

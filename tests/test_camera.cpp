@@ -3,7 +3,6 @@
 #include "small_pictures.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/math.h"
 #include "core/random.h"
 #include "scene/builtin.h"
@@ -145,8 +144,7 @@ TEST_CASE("camera: depth from what a depth buffer holds", "[camera]")
 
 TEST_CASE("camera: the picture is the right way round", "[camera]")
 {
-	Lens lens;
-	lens.fov_y_rad = 0.5 * kPi;
+	Lens lens{.fov_y_rad = 0.5 * kPi};
 	const Projector projector(projectionOf(lens, 2.0), 200, 100);
 	// Half the height at 45°: the upper edge shows y = depth, the right one x = 2 × depth.
 	CHECK(projector.pixelOf({0.0, 3.0, -3.0}).y == Approx(0.0).margin(1e-12));
@@ -381,11 +379,8 @@ TEST_CASE("camera: nobody stands on a roof where there is a floor", "[camera]")
 		test::addBox(level, {19, 0, z}, {20, 5, z + 1});
 	}
 	const Tracer tracer(level, {});
-	int above = 0;
-	for (const LevelCamera& camera : chooseCameras(tracer, 6, {}))
-	{
-		above += camera.world_from_camera[3].y > 9.0 ? 1 : 0;
-	}
+	const int above = sumOver(chooseCameras(tracer, 6, {}),
+							  [](const LevelCamera& camera) { return camera.world_from_camera[3].y > 9.0 ? 1 : 0; });
 	CHECK(above == 0);
 }
 

@@ -14,9 +14,7 @@ const std::vector<Domain> kCellDomains{Domain::disk, Domain::ball, Domain::spher
 
 std::vector<glm::dvec3> somePoints(Domain domain, int count, uint64_t seed)
 {
-	Recipe recipe;
-	recipe.domain = domain;
-	recipe.count = count;
+	Recipe recipe{.domain = domain, .count = count};
 	Random random(seed);
 	return randomPoints(Layout(recipe), random);
 }

@@ -3,20 +3,16 @@
 #include "testing.h"
 
 #include "core/decimal.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/isolate.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/random.h"
-#include "core/remaining_time.h"
-#include "core/round.h"
 
 #include <sys/wait.h>
 
 #include <atomic>
-#include <csignal>
 
 namespace
 {
@@ -48,6 +44,49 @@ std::string messageOf(const std::function<void()>& act)
 }
 
 using Names = std::vector<std::string>;
+
+[[gnu::noinline]] void roundPair(double* pair)
+{
+	pair[0] = static_cast<double>(static_cast<float>(pair[0]));
+	pair[1] = static_cast<double>(static_cast<float>(pair[1]));
+}
+
+constexpr const char* kWorker = "nook_test_worker"; // test_worker.cpp
+
+const auto kNoArguments = [](ValueWriter&) {
+};
+
+// Outcome of a worker that runs this function: its text, or the error.
+std::string outcomeOf(const char* function, const std::optional<IsolationLimits>& limits = IsolationLimits{})
+{
+	std::string answer = "nothing";
+	try
+	{
+		isolate({kWorker, function}, "some.file", limits, kNoArguments, [&](ValueReader& from) { answer = from.text(); });
+	}
+	catch (const Error& error)
+	{
+		answer = std::to_string(static_cast<int>(error.code())) + " " + error.what();
+	}
+	return answer;
+}
+
+// Likewise for a kept worker; the argument is for "trap".
+std::string keptOutcomeOf(const char* function, const std::optional<bool>& argument = std::nullopt)
+{
+	std::string answer;
+	isolate(
+		{kWorker, function, true}, "some.file", IsolationLimits{},
+		[argument](ValueWriter& to)
+		{
+			if (argument)
+			{
+				to.value(*argument);
+			}
+		},
+		[&](ValueReader& from) { answer = from.text(); });
+	return answer;
+}
 
 } // namespace
 
@@ -273,17 +312,6 @@ TEST_CASE("math: angles within the stated error", "[core]")
 	CHECK(asinOf(-1.0 - 1e-15) == -0.5 * kPi);
 }
 
-namespace
-{
-
-[[gnu::noinline]] void roundPair(double* pair)
-{
-	pair[0] = static_cast<double>(static_cast<float>(pair[0]));
-	pair[1] = static_cast<double>(static_cast<float>(pair[1]));
-}
-
-} // namespace
-
 TEST_CASE("math: rounding to a 32-bit float is kept by the compiler", "[core]")
 {
 	volatile double x = 0.59618837; // volatile: otherwise the compiler would compute the sum correctly
@@ -337,11 +365,7 @@ TEST_CASE("random: below gives every value as often", "[core]")
 	{
 		hits[random.below(6)] += 1;
 	}
-	double chi2 = 0.0;
-	for (const int n : hits)
-	{
-		chi2 += (n - 10000.0) * (n - 10000.0) / 10000.0;
-	}
+	const double chi2 = sumOver(hits, [](const int n) { return (n - 10000.0) * (n - 10000.0) / 10000.0; });
 	CHECK(chi2 < 20.5); // 0.1 % of the time above, five degrees of freedom
 	CHECK(random.below(1) == 0);
 }
@@ -529,48 +553,6 @@ TEST_CASE("decimal: what is read is what <charconv> reads", "[core]")
 		REQUIRE((a == b || (std::isnan(a) && std::isnan(b))));
 	}
 }
-
-namespace
-{
-
-constexpr const char* kWorker = "nook_test_worker"; // test_worker.cpp
-
-const auto kNoArguments = [](ValueWriter&) {
-};
-
-// Outcome of a worker that runs this function: its text, or the error.
-std::string outcomeOf(const char* function, const std::optional<IsolationLimits>& limits = IsolationLimits{})
-{
-	std::string answer = "nothing";
-	try
-	{
-		isolate({kWorker, function}, "some.file", limits, kNoArguments, [&](ValueReader& from) { answer = from.text(); });
-	}
-	catch (const Error& error)
-	{
-		answer = std::to_string(static_cast<int>(error.code())) + " " + error.what();
-	}
-	return answer;
-}
-
-// Likewise for a kept worker; the argument is for "trap".
-std::string keptOutcomeOf(const char* function, const std::optional<bool>& argument = std::nullopt)
-{
-	std::string answer;
-	isolate(
-		{kWorker, function, true}, "some.file", IsolationLimits{},
-		[argument](ValueWriter& to)
-		{
-			if (argument)
-			{
-				to.value(*argument);
-			}
-		},
-		[&](ValueReader& from) { answer = from.text(); });
-	return answer;
-}
-
-} // namespace
 
 TEST_CASE("isolate: what a worker writes comes back", "[core]")
 {

@@ -3,7 +3,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/file.h"
 #include "core/image.h"
 #include "core/text.h"
@@ -123,9 +122,7 @@ TEST_CASE("tile JSON: what is read back is what was written, bit for bit", "[emi
 		for (const bool transforms : {false, true})
 		{
 			const PatternTile tile = scatteredTile(domain, 3, 5, transforms);
-			TileRecipe recipe;
-			recipe.size = 3;
-			recipe.kind = transforms ? TileKind::random : TileKind::points;
+			TileRecipe recipe{.size = 3, .kind = transforms ? TileKind::random : TileKind::points};
 			EmitContext context = contextOf("nook tile --pattern p.json --size 3");
 			context.base_command = "nook pattern --domain disk --count 5";
 			TileQuality quality;

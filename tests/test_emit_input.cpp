@@ -3,7 +3,6 @@
 #include "emit_samples.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
 
@@ -15,6 +14,19 @@ struct Wrong
 	std::string text;
 	const char* message; // a part of it
 };
+
+template <class Parse> void checkRefusals(const std::vector<Wrong>& table, const std::string& path, const Parse& parse)
+{
+	for (const Wrong& wrong : table)
+	{
+		INFO(wrong.text);
+		const std::string message = refusalBy([&] { parse(wrong.text, path); });
+		INFO(message);
+		CHECK(message.find(path + ": ") == 0);
+		CHECK(message.find(wrong.message) != std::string::npos);
+		CHECK(message.find("expected") != std::string::npos);
+	}
+}
 
 std::string disk(const std::string& fields)
 {
@@ -139,15 +151,7 @@ TEST_CASE("JSON input: what is wrong is named", "[emit]")
 		{replaced(ours, "\"centre\": false", "\"centre\": 0"), "recipe.centre: found 0, expected true or false"},
 		{replaced(ours, "\"exponent\": 0.0", "\"exponent\": 2.0"), "recipe: found options that do not go together"},
 	};
-	for (const Wrong& wrong : table)
-	{
-		INFO(wrong.text);
-		const std::string message = refusalBy([&] { parsePatternJson(wrong.text, "p.json"); });
-		INFO(message);
-		CHECK(message.find("p.json: ") == 0);
-		CHECK(message.find(wrong.message) != std::string::npos);
-		CHECK(message.find("expected") != std::string::npos);
-	}
+	checkRefusals(table, "p.json", [](const std::string& text, const std::string& path) { parsePatternJson(text, path); });
 	std::string many = R"({"domain": "disk", "points": [)";
 	for (int i = 0; i < 4097; ++i)
 	{
@@ -162,9 +166,7 @@ TEST_CASE("JSON input: what is wrong is named", "[emit]")
 
 TEST_CASE("tile input: what is wrong is named", "[emit]")
 {
-	TileRecipe recipe;
-	recipe.size = 2;
-	recipe.kind = TileKind::random;
+	TileRecipe recipe{.size = 2, .kind = TileKind::random};
 	TileQuality quality;
 	quality.window = 0.0;
 	const std::string ours = tileJson(scatteredTile(Domain::disk, 2, 2, true), &recipe, quality, contextOf("nook tile"));
@@ -181,20 +183,12 @@ TEST_CASE("tile input: what is wrong is named", "[emit]")
 		{replaced(ours, "\"window\": 0.0", "\"window\": true"), "quality.window: found true"},
 		{replaced(ours, "\"kind\": \"random\"", "\"kind\": \"none\""), "recipe.kind: found \"none\""},
 	};
-	for (const Wrong& wrong : table)
-	{
-		const std::string message = refusalBy([&] { parseTileJson(wrong.text, "t.json"); });
-		INFO(message);
-		CHECK(message.find("t.json: ") == 0);
-		CHECK(message.find(wrong.message) != std::string::npos);
-	}
+	checkRefusals(table, "t.json", [](const std::string& text, const std::string& path) { parseTileJson(text, path); });
 }
 
 TEST_CASE("tile input: filters, frames and moves come back, and what is wrong with them is named", "[emit]")
 {
-	TileRecipe recipe;
-	recipe.size = 2;
-	recipe.filters = {tileFilterNamed("binomial:3"), tileFilterNamed("box:2")};
+	TileRecipe recipe{.size = 2, .filters = {tileFilterNamed("binomial:3"), tileFilterNamed("box:2")}};
 	recipe.filters[1].share = 2.5;
 	recipe.frames = 3;
 	recipe.moves = true;
@@ -228,13 +222,7 @@ TEST_CASE("tile input: filters, frames and moves come back, and what is wrong wi
 		{replaced(ours, "[0.25,0.25,0.25,0.25]", "[0.25,0.25,-0.25,-0.25]"), "taps: found taps with the sum 0"},
 		{replaced(ours, "\"ema\": 0.1", "\"ema\": 0.0"), "ema: expected"},
 	};
-	for (const Wrong& wrong : table)
-	{
-		const std::string message = refusalBy([&] { parseTileJson(wrong.text, "t.json"); });
-		INFO(message);
-		CHECK(message.find("t.json: ") == 0);
-		CHECK(message.find(wrong.message) != std::string::npos);
-	}
+	checkRefusals(table, "t.json", [](const std::string& text, const std::string& path) { parseTileJson(text, path); });
 }
 
 TEST_CASE("filter input: taps of a file, and what is wrong is named", "[emit]")
@@ -255,13 +243,7 @@ TEST_CASE("filter input: taps of a file, and what is wrong is named", "[emit]")
 		{R"({"taps": [[0, 0]]})", "taps: found taps with the sum 0"},
 		{R"({"taps": 3})", "taps: found 3"},
 	};
-	for (const Wrong& wrong : table)
-	{
-		const std::string message = refusalBy([&] { parseFilter(wrong.text, "k.json"); });
-		INFO(message);
-		CHECK(message.find("k.json: ") == 0);
-		CHECK(message.find(wrong.message) != std::string::npos);
-	}
+	checkRefusals(table, "k.json", [](const std::string& text, const std::string& path) { parseFilter(text, path); });
 }
 
 TEST_CASE("CSV input: columns, headers and comments of others are understood", "[emit]")
@@ -311,14 +293,7 @@ TEST_CASE("CSV input: what is wrong is named by its row", "[emit]")
 		{std::string("0,0\n0\0,1\n", 9), "row 2: found \"0\\u0000\""},
 		{R"({"domain": "disk"})", "found the column"},
 	};
-	for (const Wrong& wrong : table)
-	{
-		INFO(wrong.text);
-		const std::string message = refusalBy([&] { parsePatternCsv(wrong.text, "p.csv"); });
-		INFO(message);
-		CHECK(message.find("p.csv: ") == 0);
-		CHECK(message.find(wrong.message) != std::string::npos);
-	}
+	checkRefusals(table, "p.csv", [](const std::string& text, const std::string& path) { parsePatternCsv(text, path); });
 	CHECK(refusalBy([] { parsePatternCsv("# domain: ball\n0,0,0\n", "p.csv", Domain::disk); })
 			  .find("expected \"disk\" as asked for") != std::string::npos);
 	std::string many;

@@ -5,7 +5,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/file.h"
 #include "format/arrays.h"
 #include "format/pattern_file.h"

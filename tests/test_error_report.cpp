@@ -6,11 +6,9 @@
 
 #include "core/base64.h"
 #include "core/content_hash.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/random.h"
 #include "core/work_units.h"
-#include "scene/builtin.h"
 #include "shade/gl_context.h"
 #include "study/error_report.h"
 #include "study/measure_view.h"
@@ -88,6 +86,37 @@ ErrorReportSettings tinySettings(const TemporaryFolder& folder)
 	settings.measure.repetitions = 1;
 	settings.version = "test";
 	return settings;
+}
+
+// A box on a floor, seen from above one side.
+Level boxOnFloor()
+{
+	Level level = emptyLevel();
+	addQuad(level, {-4.0, 0.0, -4.0}, {0.0, 0.0, 8.0}, {8.0, 0.0, 0.0});
+	addBox(level, {-0.5, 0.0, -0.5}, {0.5, 1.0, 0.5});
+	LevelCamera camera;
+	camera.name = "main";
+	camera.world_from_camera = worldFromCamera({2.0, 2.0, 2.0}, {0.0, 0.3, 0.0});
+	level.cameras.push_back(camera);
+	return level;
+}
+
+Candidate lines(int count)
+{
+	Candidate candidate;
+	candidate.source = SampleSource::refined;
+	candidate.count = count;
+	candidate.shade.filter = ShadeFilter::bilateral;
+	return candidate;
+}
+
+Candidate rays(int count)
+{
+	Candidate candidate;
+	candidate.kind = CandidateKind::rays;
+	candidate.origin = Origin::rays;
+	candidate.count = count;
+	return candidate;
 }
 
 } // namespace
@@ -484,42 +513,6 @@ TEST_CASE("error report: a level that fails is a line of it, and the others go o
 }
 
 // Candidates and what a view measures of them.
-
-namespace
-{
-
-// A box on a floor, seen from above one side.
-Level boxOnFloor()
-{
-	Level level = emptyLevel();
-	addQuad(level, {-4.0, 0.0, -4.0}, {0.0, 0.0, 8.0}, {8.0, 0.0, 0.0});
-	addBox(level, {-0.5, 0.0, -0.5}, {0.5, 1.0, 0.5});
-	LevelCamera camera;
-	camera.name = "main";
-	camera.world_from_camera = worldFromCamera({2.0, 2.0, 2.0}, {0.0, 0.3, 0.0});
-	level.cameras.push_back(camera);
-	return level;
-}
-
-Candidate lines(int count)
-{
-	Candidate candidate;
-	candidate.source = SampleSource::refined;
-	candidate.count = count;
-	candidate.shade.filter = ShadeFilter::bilateral;
-	return candidate;
-}
-
-Candidate rays(int count)
-{
-	Candidate candidate;
-	candidate.kind = CandidateKind::rays;
-	candidate.origin = Origin::rays;
-	candidate.count = count;
-	return candidate;
-}
-
-} // namespace
 
 TEST_CASE("error report: names of candidates are unique, and the smaller grid is of the larger one's methods", "[report]")
 {

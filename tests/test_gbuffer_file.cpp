@@ -3,7 +3,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/file.h"
 #include "methods/block.h"
 #include "scene/gbuffer.h"
@@ -68,6 +67,31 @@ GBufferImport fromDepth()
 	GBufferImport import;
 	import.normals_from_depth = true;
 	return import;
+}
+
+// Greatest distance of a normal from `normal` among the pixels with a neighbour on each axis.
+double worstError(const GBuffer& gbuffer, const glm::dvec3& normal)
+{
+	const auto there = [&](int x, int y)
+	{
+		return x >= 0 && y >= 0 && x < gbuffer.width_px && y < gbuffer.height_px &&
+			   std::isfinite(gbuffer.depth[static_cast<std::size_t>(y * gbuffer.width_px + x)]);
+	};
+	double worst = -1.0; // fails for a picture without such pixels
+	for (int y = 0; y < gbuffer.height_px; ++y)
+	{
+		for (int x = 0; x < gbuffer.width_px; ++x)
+		{
+			const bool across = there(x - 1, y) || there(x + 1, y) || gbuffer.width_px == 1;
+			const bool along = there(x, y - 1) || there(x, y + 1) || gbuffer.height_px == 1;
+			if (there(x, y) && across && along)
+			{
+				const glm::dvec3 found(gbuffer.normals[static_cast<std::size_t>(y * gbuffer.width_px + x)]);
+				worst = std::max(worst, glm::length(found - normal));
+			}
+		}
+	}
+	return worst;
 }
 
 } // namespace
@@ -238,8 +262,7 @@ TEST_CASE("scene: linear depth, distances, and what is sky", "[gbuffer]")
 
 	// Found by fuzzing: the smallest distance has a depth along the view that rounds to 0 in 32 bits.
 	Image near = foreign(3, 3, {"Z"}, std::vector<float>(9, std::numeric_limits<float>::denorm_min()));
-	Lens wide;
-	wide.fov_y_rad = 2.6;
+	Lens wide{.fov_y_rad = 2.6};
 	near.matrices[1] = matrixNamed("projection", projectionOf(wide, 1.0));
 	CHECK_THROWS_AS(readBack(near, import), Error);
 }
@@ -358,36 +381,6 @@ TEST_CASE("scene: surfaces of a G-buffer as a mask", "[gbuffer]")
 	image.values[3] = -1.0F;
 	CHECK_THROWS_WITH(readSurfaceMask(ScratchFile(image).path), Catch::Contains("channel Z, pixel 1,1: found -1"));
 }
-
-namespace
-{
-
-// Greatest distance of a normal from `normal` among the pixels with a neighbour on each axis.
-double worstError(const GBuffer& gbuffer, const glm::dvec3& normal)
-{
-	const auto there = [&](int x, int y)
-	{
-		return x >= 0 && y >= 0 && x < gbuffer.width_px && y < gbuffer.height_px &&
-			   std::isfinite(gbuffer.depth[static_cast<std::size_t>(y * gbuffer.width_px + x)]);
-	};
-	double worst = -1.0; // fails for a picture without such pixels
-	for (int y = 0; y < gbuffer.height_px; ++y)
-	{
-		for (int x = 0; x < gbuffer.width_px; ++x)
-		{
-			const bool across = there(x - 1, y) || there(x + 1, y) || gbuffer.width_px == 1;
-			const bool along = there(x, y - 1) || there(x, y + 1) || gbuffer.height_px == 1;
-			if (there(x, y) && across && along)
-			{
-				const glm::dvec3 found(gbuffer.normals[static_cast<std::size_t>(y * gbuffer.width_px + x)]);
-				worst = std::max(worst, glm::length(found - normal));
-			}
-		}
-	}
-	return worst;
-}
-
-} // namespace
 
 TEST_CASE("scene: normals from the depth of a plane are the plane's", "[gbuffer]")
 {

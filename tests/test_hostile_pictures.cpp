@@ -5,7 +5,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/image_codec.h"
 #include "core/isolate.h"
 
@@ -51,6 +50,51 @@ void checkSame(const std::string& bytes, const std::string& name)
 		CHECK(a.matrices[i].values == b.matrices[i].values);
 		CHECK(a.matrices[i].wide == b.matrices[i].wide);
 	}
+}
+
+// The PNG with an additional chunk after its header.
+std::string withChunk(const std::string& png, const std::string& type, const std::string& content)
+{
+	constexpr std::size_t kHeader = 8 + 12 + 13;
+	std::string chunk;
+	appendPngChunk(chunk, type, content);
+	return png.substr(0, kHeader) + chunk + png.substr(kHeader);
+}
+
+// A PNG of zeros with `channels` values of `bits` bits per pixel.
+std::string zerosPng(uint32_t width_px, uint32_t height_px, char bits, char colour_type, uint32_t channels)
+{
+	std::string head;
+	appendBigEndian(head, width_px);
+	appendBigEndian(head, height_px);
+	head += {bits, colour_type, 0, 0, 0};
+	std::string png = "\x89PNG\r\n\x1A\n";
+	appendPngChunk(png, "IHDR", head);
+	appendPngChunk(png, "IDAT",
+				   zlibZeros(uint64_t{height_px} * (1 + uint64_t{width_px} * channels * static_cast<uint64_t>(bits / 8))));
+	appendPngChunk(png, "IEND", "");
+	return png;
+}
+
+// Without the chunks that pngBytes() adds.
+std::string bare(const std::string& png)
+{
+	std::string left = png.substr(0, 8);
+	for (std::size_t at = 8; at + 12 <= png.size();)
+	{
+		std::size_t size = 12;
+		for (std::size_t i = 0; i < 4; ++i)
+		{
+			size += static_cast<std::size_t>(static_cast<unsigned char>(png[at + i])) << (24 - 8 * i);
+		}
+		const std::string type = png.substr(at + 4, 4);
+		if (type == "IHDR" || type == "IDAT" || type == "IEND" || (type == "tEXt" && png.compare(at + 8, 5, "oiio:") != 0))
+		{
+			left += png.substr(at, size);
+		}
+		at += size;
+	}
+	return left;
 }
 
 } // namespace
@@ -105,56 +149,6 @@ TEST_CASE("image: an OpenEXR reads as OpenImageIO reads it", "[image]")
 		CHECK(a.at(100, a.channel(image.channels[y])) == image.at(100, static_cast<int>(y)));
 	}
 }
-
-namespace
-{
-
-// The PNG with an additional chunk after its header.
-std::string withChunk(const std::string& png, const std::string& type, const std::string& content)
-{
-	constexpr std::size_t kHeader = 8 + 12 + 13;
-	std::string chunk;
-	appendPngChunk(chunk, type, content);
-	return png.substr(0, kHeader) + chunk + png.substr(kHeader);
-}
-
-// A PNG of zeros with `channels` values of `bits` bits per pixel.
-std::string zerosPng(uint32_t width_px, uint32_t height_px, char bits, char colour_type, uint32_t channels)
-{
-	std::string head;
-	appendBigEndian(head, width_px);
-	appendBigEndian(head, height_px);
-	head += {bits, colour_type, 0, 0, 0};
-	std::string png = "\x89PNG\r\n\x1A\n";
-	appendPngChunk(png, "IHDR", head);
-	appendPngChunk(png, "IDAT",
-				   zlibZeros(uint64_t{height_px} * (1 + uint64_t{width_px} * channels * static_cast<uint64_t>(bits / 8))));
-	appendPngChunk(png, "IEND", "");
-	return png;
-}
-
-// Without the chunks that pngBytes() adds.
-std::string bare(const std::string& png)
-{
-	std::string left = png.substr(0, 8);
-	for (std::size_t at = 8; at + 12 <= png.size();)
-	{
-		std::size_t size = 12;
-		for (std::size_t i = 0; i < 4; ++i)
-		{
-			size += static_cast<std::size_t>(static_cast<unsigned char>(png[at + i])) << (24 - 8 * i);
-		}
-		const std::string type = png.substr(at + 4, 4);
-		if (type == "IHDR" || type == "IDAT" || type == "IEND" || (type == "tEXt" && png.compare(at + 8, 5, "oiio:") != 0))
-		{
-			left += png.substr(at, size);
-		}
-		at += size;
-	}
-	return left;
-}
-
-} // namespace
 
 TEST_CASE("image: a PNG reads as OpenImageIO reads it", "[image]")
 {

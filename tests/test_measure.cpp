@@ -13,11 +13,7 @@ namespace
 
 Pattern made(Domain domain, int count, Method method, bool symmetric = false)
 {
-	Recipe recipe;
-	recipe.domain = domain;
-	recipe.count = count;
-	recipe.method = method;
-	recipe.symmetric = symmetric;
+	Recipe recipe{.domain = domain, .count = count, .symmetric = symmetric, .method = method};
 	return generatePattern(recipe, {2, {}});
 }
 
@@ -34,6 +30,13 @@ Pattern hexagonRule()
 		p.weights.push_back(7.0 / 60.0);
 	}
 	return p;
+}
+
+const std::filesystem::path kPatterns = std::filesystem::path(NOOK_SOURCE_DIR) / "patterns";
+
+void checkSame(double measured, double written)
+{
+	CHECK(measured == Approx(written).epsilon(1e-9).margin(1e-12));
 }
 
 } // namespace
@@ -223,26 +226,13 @@ TEST_CASE("quality: doubled points have infinite energy and no distance", "[meas
 TEST_CASE("quality: a tile's window on the grid and in closed form agree", "[measure]")
 {
 	const Pattern base = made(Domain::disk, 5, Method::refine);
-	TileRecipe recipe;
-	recipe.kind = TileKind::even;
+	TileRecipe recipe{.kind = TileKind::even};
 	const TileQuality q = measureTile(generateTile(base, recipe), base);
 	REQUIRE(q.window.has_value());
 	CHECK(*q.window == Approx(q.window_exact.value()).epsilon(0.02));
 	CHECK(q.variant_plane.value() == Approx(q.base_plane.value()).epsilon(1e-6));
 	CHECK(q.window < q.base_plane);
 }
-
-namespace
-{
-
-const std::filesystem::path kPatterns = std::filesystem::path(NOOK_SOURCE_DIR) / "patterns";
-
-void checkSame(double measured, double written)
-{
-	CHECK(measured == Approx(written).epsilon(1e-9).margin(1e-12));
-}
-
-} // namespace
 
 TEST_CASE("catalogue: every entry is there, and measures again what it says of itself", "[catalogue]")
 {

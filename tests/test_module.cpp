@@ -8,9 +8,7 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/file.h"
-#include "core/lists.h"
 #include "emit/module.h"
 #include "methods/block.h"
 #include "methods/kernel_text.h"
@@ -74,6 +72,163 @@ std::size_t indexOf(ShadeMethod method)
 std::string callOf(ShadeMethod method)
 {
 	return kCalls[indexOf(method)];
+}
+
+// A camera as an engine holds it: 90 degrees high, twice as wide, near 0.1. The table in docs/reference/modules.md says what to
+// pass, and the engine's sources which row its textures begin with.
+struct EngineCamera
+{
+	const char* engines;
+	double projection[16]; // in the engine's memory
+	bool rows;             // memory holds rows of a matrix for column vectors
+	bool left_handed;
+	bool zero_to_one;
+	int first_row_ndc_y;
+	bool top_first; // row 0 of a texture that the engine draws shows the top of the scene
+};
+
+constexpr double kNear = 0.1 / (0.1 - 100.0); // near / (near - far) with far = 100
+const EngineCamera kEngineCameras[] = {
+	{"Direct3D; bgfx with z from 0 to 1",
+	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 - kNear, 1, 0, 0, 100 * kNear, 0},
+	 false,
+	 true,
+	 true,
+	 1,
+	 true},
+	{"Unity, camera.projectionMatrix, on OpenGL also through GL.GetGPUProjectionMatrix; three.js; Babylon.js, right-handed",
+	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2 * kNear - 1, -1, 0, 0, 200 * kNear, 0},
+	 false,
+	 false,
+	 false,
+	 -1,
+	 false},
+	{"Unity, GL.GetGPUProjectionMatrix: reversed, upside down",
+	 {0.5, 0, 0, 0, 0, -1, 0, 0, 0, 0, -kNear, -1, 0, 0, -100 * kNear, 0},
+	 false,
+	 false,
+	 true,
+	 1,
+	 false},
+	{"Unreal: reversed, infinite", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0.1, 0}, false, true, true, 1, true},
+	{"Godot 4.3, RenderSceneData.get_cam_projection: reversed, upside down",
+	 {0.5, 0, 0, 0, 0, -1, 0, 0, 0, 0, -kNear, -1, 0, 0, -100 * kNear, 0},
+	 false,
+	 false,
+	 true,
+	 -1,
+	 true},
+	{"Godot 4.3, Compatibility: reversed without clip control, upside down",
+	 {0.5, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1 - 2 * kNear, -1, 0, 0, -200 * kNear, 0},
+	 false,
+	 false,
+	 false,
+	 -1,
+	 true},
+	{"three.js, reversedDepthBuffer",
+	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, -kNear, -1, 0, 0, -100 * kNear, 0},
+	 false,
+	 false,
+	 true,
+	 -1,
+	 false},
+	{"Babylon.js, left-handed; bgfx on OpenGL",
+	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 - 2 * kNear, 1, 0, 0, 200 * kNear, 0},
+	 false,
+	 true,
+	 false,
+	 -1,
+	 false},
+	{"Babylon.js, WebGPU, left-handed: turns y of what it draws into textures",
+	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 - kNear, 1, 0, 0, 100 * kNear, 0},
+	 false,
+	 true,
+	 true,
+	 -1,
+	 false},
+	{"Babylon.js, WebGPU, right-handed",
+	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, kNear - 1, -1, 0, 0, 100 * kNear, 0},
+	 false,
+	 false,
+	 true,
+	 -1,
+	 false},
+	{"OGRE: rows", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2 * kNear - 1, 200 * kNear, 0, 0, -1, 0}, true, false, false, 1, true},
+	{"Filament: reversed, infinite", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0}, false, false, true, 1, true},
+	{"Filament, OpenGL", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0}, false, false, true, -1, false},
+};
+
+std::vector<glm::vec4> fourOf(const std::vector<glm::vec3>& normals)
+{
+	return mapped(normals, [](const glm::vec3& normal) { return glm::vec4(normal, 0.0F); });
+}
+
+std::vector<glm::vec4> tileOf(const ModuleMethod& method)
+{
+	return tileTexels(samplesOf(method.method, method.variants));
+}
+
+nook_block blockFor(const GBuffer& gbuffer, double radius)
+{
+	nook_settings settings{.width = gbuffer.width_px, .height = gbuffer.height_px, .radius = radius};
+	double numbers[16];
+	std::memcpy(numbers, &gbuffer.view.projection, sizeof numbers);
+	nook_block block{};
+	REQUIRE(nook_fill(block, numbers, settings) == nullptr);
+	return block;
+}
+
+// The module's picture with rows from the bottom. Requires a current context that supports the target.
+std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings, double radius)
+{
+	const ModuleMethod& method = settings.methods.front();
+	const std::string call = callOf(method.method) + "(ivec2(gl_FragCoord.xy))";
+	GlPass pass(foreignShader(settings.target, moduleGlsl(settings, contextOf("nook emit")), call));
+	const GlTexture target(gbuffer.width_px, gbuffer.height_px, 1, nullptr);
+	const GlTexture depths(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data());
+	const std::vector<glm::vec4> four = fourOf(gbuffer.normals);
+	const GlTexture normals(gbuffer.width_px, gbuffer.height_px, 4, &four[0].x);
+	const std::vector<glm::vec4> texels = tileOf(method);
+	const int variants = static_cast<int>(method.variants.size());
+	const GlTexture tile(variants, static_cast<int>(method.variants.front().count()), 4, &texels[0].x);
+	const nook_block block = blockFor(gbuffer, radius);
+	pass.bind("nook_depths", depths);
+	pass.bind("nook_normals", normals);
+	constexpr std::array<const char*, 3> kTiles{"nook_vo_line_tile", "nook_vo_point_tile", "nook_alchemy_tile"};
+	pass.bind(kTiles[indexOf(method.method)], tile);
+	pass.bindBlock("nook_block", std::as_bytes(std::span(&block, 1)));
+	pass.draw(target);
+	return readFloats(target);
+}
+
+// The kernels on the CPU, with the block of the emitted header.
+std::vector<float> computed(const GBuffer& gbuffer, const ModuleSettings& settings, double radius)
+{
+	const ModuleMethod& method = settings.methods.front();
+	const ShadeSamples samples = samplesOf(method.method, method.variants);
+	ShadeSettings shade;
+	shade.method = method.method;
+	shade.radius_m = radius;
+	shade.use_normal = settings.shade.use_normal;
+	shade.cut = settings.shade.cut;
+	shade_kernels::Kernels kernels;
+	kernels.nook = blockOf(frameOf(gbuffer), samples, shade);
+	kernels.nook.across_y.x = -kernels.nook.across_y.x;
+	const std::vector<float> depths = finiteDepths(gbuffer);
+	kernels.depths = depths;
+	kernels.normals = gbuffer.normals;
+	kernels.samples = samples.samples;
+	std::vector<float> values;
+	for (int y = 0; y < gbuffer.height_px; ++y)
+	{
+		for (int x = 0; x < gbuffer.width_px; ++x)
+		{
+			values.push_back(method.method == ShadeMethod::vo_line    ? kernels.nookVoLine({x, y})
+							 : method.method == ShadeMethod::vo_point ? kernels.nookVoPoint({x, y})
+																	  : kernels.nookAlchemy({x, y}));
+		}
+	}
+	return values;
 }
 
 } // namespace
@@ -262,95 +417,6 @@ TEST_CASE("module: the emitted header fills the block as our own code does", "[e
 	CHECK((theirs.beta == ours.beta && theirs.epsilon == ours.epsilon));
 }
 
-namespace
-{
-
-// A camera as an engine holds it: 90 degrees high, twice as wide, near 0.1. The table in docs/reference/modules.md says what to
-// pass, and the engine's sources which row its textures begin with.
-struct EngineCamera
-{
-	const char* engines;
-	double projection[16]; // in the engine's memory
-	bool rows;             // memory holds rows of a matrix for column vectors
-	bool left_handed;
-	bool zero_to_one;
-	int first_row_ndc_y;
-	bool top_first; // row 0 of a texture that the engine draws shows the top of the scene
-};
-
-constexpr double kNear = 0.1 / (0.1 - 100.0); // near / (near - far) with far = 100
-const EngineCamera kEngineCameras[] = {
-	{"Direct3D; bgfx with z from 0 to 1",
-	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 - kNear, 1, 0, 0, 100 * kNear, 0},
-	 false,
-	 true,
-	 true,
-	 1,
-	 true},
-	{"Unity, camera.projectionMatrix, on OpenGL also through GL.GetGPUProjectionMatrix; three.js; Babylon.js, right-handed",
-	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2 * kNear - 1, -1, 0, 0, 200 * kNear, 0},
-	 false,
-	 false,
-	 false,
-	 -1,
-	 false},
-	{"Unity, GL.GetGPUProjectionMatrix: reversed, upside down",
-	 {0.5, 0, 0, 0, 0, -1, 0, 0, 0, 0, -kNear, -1, 0, 0, -100 * kNear, 0},
-	 false,
-	 false,
-	 true,
-	 1,
-	 false},
-	{"Unreal: reversed, infinite", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0.1, 0}, false, true, true, 1, true},
-	{"Godot 4.3, RenderSceneData.get_cam_projection: reversed, upside down",
-	 {0.5, 0, 0, 0, 0, -1, 0, 0, 0, 0, -kNear, -1, 0, 0, -100 * kNear, 0},
-	 false,
-	 false,
-	 true,
-	 -1,
-	 true},
-	{"Godot 4.3, Compatibility: reversed without clip control, upside down",
-	 {0.5, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1 - 2 * kNear, -1, 0, 0, -200 * kNear, 0},
-	 false,
-	 false,
-	 false,
-	 -1,
-	 true},
-	{"three.js, reversedDepthBuffer",
-	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, -kNear, -1, 0, 0, -100 * kNear, 0},
-	 false,
-	 false,
-	 true,
-	 -1,
-	 false},
-	{"Babylon.js, left-handed; bgfx on OpenGL",
-	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 - 2 * kNear, 1, 0, 0, 200 * kNear, 0},
-	 false,
-	 true,
-	 false,
-	 -1,
-	 false},
-	{"Babylon.js, WebGPU, left-handed: turns y of what it draws into textures",
-	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 - kNear, 1, 0, 0, 100 * kNear, 0},
-	 false,
-	 true,
-	 true,
-	 -1,
-	 false},
-	{"Babylon.js, WebGPU, right-handed",
-	 {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, kNear - 1, -1, 0, 0, 100 * kNear, 0},
-	 false,
-	 false,
-	 true,
-	 -1,
-	 false},
-	{"OGRE: rows", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2 * kNear - 1, 200 * kNear, 0, 0, -1, 0}, true, false, false, 1, true},
-	{"Filament: reversed, infinite", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0}, false, false, true, 1, true},
-	{"Filament, OpenGL", {0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0}, false, false, true, -1, false},
-};
-
-} // namespace
-
 TEST_CASE("module: cameras of every convention give the rays and depths of one", "[emit]")
 {
 	for (const EngineCamera& engine : kEngineCameras)
@@ -425,87 +491,6 @@ TEST_CASE("module: the header compiles as C++17 without a warning", "[emit]")
 		}
 	}
 }
-
-namespace
-{
-
-std::vector<glm::vec4> fourOf(const std::vector<glm::vec3>& normals)
-{
-	return mapped(normals, [](const glm::vec3& normal) { return glm::vec4(normal, 0.0F); });
-}
-
-std::vector<glm::vec4> tileOf(const ModuleMethod& method)
-{
-	return tileTexels(samplesOf(method.method, method.variants));
-}
-
-nook_block blockFor(const GBuffer& gbuffer, double radius)
-{
-	nook_settings settings;
-	settings.width = gbuffer.width_px;
-	settings.height = gbuffer.height_px;
-	settings.radius = radius;
-	double numbers[16];
-	std::memcpy(numbers, &gbuffer.view.projection, sizeof numbers);
-	nook_block block{};
-	REQUIRE(nook_fill(block, numbers, settings) == nullptr);
-	return block;
-}
-
-// The module's picture with rows from the bottom. Requires a current context that supports the target.
-std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings, double radius)
-{
-	const ModuleMethod& method = settings.methods.front();
-	const std::string call = callOf(method.method) + "(ivec2(gl_FragCoord.xy))";
-	GlPass pass(foreignShader(settings.target, moduleGlsl(settings, contextOf("nook emit")), call));
-	const GlTexture target(gbuffer.width_px, gbuffer.height_px, 1, nullptr);
-	const GlTexture depths(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data());
-	const std::vector<glm::vec4> four = fourOf(gbuffer.normals);
-	const GlTexture normals(gbuffer.width_px, gbuffer.height_px, 4, &four[0].x);
-	const std::vector<glm::vec4> texels = tileOf(method);
-	const int variants = static_cast<int>(method.variants.size());
-	const GlTexture tile(variants, static_cast<int>(method.variants.front().count()), 4, &texels[0].x);
-	const nook_block block = blockFor(gbuffer, radius);
-	pass.bind("nook_depths", depths);
-	pass.bind("nook_normals", normals);
-	constexpr std::array<const char*, 3> kTiles{"nook_vo_line_tile", "nook_vo_point_tile", "nook_alchemy_tile"};
-	pass.bind(kTiles[indexOf(method.method)], tile);
-	pass.bindBlock("nook_block", std::as_bytes(std::span(&block, 1)));
-	pass.draw(target);
-	return readFloats(target);
-}
-
-// The kernels on the CPU, with the block of the emitted header.
-std::vector<float> computed(const GBuffer& gbuffer, const ModuleSettings& settings, double radius)
-{
-	const ModuleMethod& method = settings.methods.front();
-	const ShadeSamples samples = samplesOf(method.method, method.variants);
-	ShadeSettings shade;
-	shade.method = method.method;
-	shade.radius_m = radius;
-	shade.use_normal = settings.shade.use_normal;
-	shade.cut = settings.shade.cut;
-	shade_kernels::Kernels kernels;
-	kernels.nook = blockOf(frameOf(gbuffer), samples, shade);
-	kernels.nook.across_y.x = -kernels.nook.across_y.x;
-	const std::vector<float> depths = finiteDepths(gbuffer);
-	kernels.depths = depths;
-	kernels.normals = gbuffer.normals;
-	kernels.samples = samples.samples;
-	std::vector<float> values;
-	for (int y = 0; y < gbuffer.height_px; ++y)
-	{
-		for (int x = 0; x < gbuffer.width_px; ++x)
-		{
-			values.push_back(method.method == ShadeMethod::vo_line    ? kernels.nookVoLine({x, y})
-							 : method.method == ShadeMethod::vo_point ? kernels.nookVoPoint({x, y})
-																	  : kernels.nookAlchemy({x, y}));
-		}
-	}
-	return values;
-}
-
-} // namespace
 
 TEST_CASE("module: in a foreign shader it draws what the kernels draw on the CPU", "[emit]")
 {

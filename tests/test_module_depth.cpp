@@ -32,8 +32,8 @@ struct GlStored
 void store(const GlTexture& texture, const GlStored& format, const float* values)
 {
 	glBindTexture(GL_TEXTURE_2D, texture.name);
-	glTexImage2D(GL_TEXTURE_2D, 0, static_cast<int>(format.stored), texture.shape.width, texture.shape.height, 0,
-				 format.channels, GL_FLOAT, values);
+	glTexImage2D(GL_TEXTURE_2D, 0, static_cast<int>(format.stored), texture.shape.width, texture.shape.height, 0, format.channels,
+				 GL_FLOAT, values);
 	REQUIRE(glGetError() == GL_NO_ERROR);
 }
 
@@ -46,11 +46,8 @@ void storeDepth(const GlTexture& texture, int bits, const std::vector<float>& de
 		store(texture, {stored, GL_DEPTH_COMPONENT}, devices.data());
 		return;
 	}
-	std::vector<std::uint16_t> steps;
-	for (const float device : devices)
-	{
-		steps.push_back(static_cast<std::uint16_t>(static_cast<double>(device) * 65535.0 + 0.5));
-	}
+	const std::vector<std::uint16_t> steps =
+		mapped(devices, [](const float device) { return static_cast<std::uint16_t>(static_cast<double>(device) * 65535.0 + 0.5); });
 	glBindTexture(GL_TEXTURE_2D, texture.name);
 	glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT16, texture.shape.width, texture.shape.height, 0, GL_DEPTH_COMPONENT,
 				 GL_UNSIGNED_SHORT, steps.data());
@@ -76,9 +73,7 @@ std::string shaderOf(const ModuleSettings& settings, const std::string& before =
 
 nook_settings settingsOf(const GBuffer& gbuffer)
 {
-	nook_settings settings;
-	settings.width = gbuffer.width_px;
-	settings.height = gbuffer.height_px;
+	nook_settings settings{.width = gbuffer.width_px, .height = gbuffer.height_px};
 	settings.first_row_ndc_y = 1; // rows start at the top
 	settings.radius = kRadius;
 	return settings;
@@ -95,12 +90,7 @@ nook_block blockFor(const glm::dmat4& projection, const nook_settings& settings)
 
 std::vector<glm::vec4> fourOf(const std::vector<glm::vec3>& normals, bool from_zero)
 {
-	std::vector<glm::vec4> four;
-	for (const glm::vec3& normal : normals)
-	{
-		four.emplace_back(from_zero ? 0.5F * normal + 0.5F : normal, 0.0F);
-	}
-	return four;
+	return mapped(normals, [&](const glm::vec3& normal) { return glm::vec4(from_zero ? 0.5F * normal + 0.5F : normal, 0.0F); });
 }
 
 std::vector<float> drawn(GlPass& pass, const GlTexture& depths, const GlTexture& normals, const nook_block& block)
@@ -119,6 +109,24 @@ std::vector<float> computed(const GBuffer& gbuffer, const DepthFormat& format)
 	settings.radius_m = kRadius;
 	settings.depth = format;
 	return shadeOnCpu(gbuffer, samplesOf(ShadeMethod::vo_line, {scatteredPattern(Domain::disk, 9)}), settings, {2, {}}).visibility;
+}
+
+// The reason why a projection is rejected, for linear depth unless `device`.
+std::string faultOf(const glm::dmat4& projection, bool device = false, bool zero_to_one = false)
+{
+	nook_settings settings{.width = 16, .height = 9, .device_depth = device, .zero_to_one = zero_to_one};
+	double numbers[16];
+	std::memcpy(numbers, &projection, sizeof numbers);
+	nook_block block{};
+	block.frame = 7.0F;
+	const char* const reason = nook_fill(block, numbers, settings);
+	CHECK((reason == nullptr) == (block.frame != 7.0F)); // nothing filled
+	return reason == nullptr ? "" : reason;
+}
+
+bool holds(const std::string& text, const char* part)
+{
+	return text.find(part) != std::string::npos;
 }
 
 } // namespace
@@ -242,33 +250,6 @@ TEST_CASE("module: a rectangle of a texture, and a guard band around it", "[emit
 	CHECK(differing(8) > 100); // now the walls are neighbours
 }
 
-namespace
-{
-
-// The reason why a projection is rejected, for linear depth unless `device`.
-std::string faultOf(const glm::dmat4& projection, bool device = false, bool zero_to_one = false)
-{
-	nook_settings settings;
-	settings.width = 16;
-	settings.height = 9;
-	settings.device_depth = device;
-	settings.zero_to_one = zero_to_one;
-	double numbers[16];
-	std::memcpy(numbers, &projection, sizeof numbers);
-	nook_block block{};
-	block.frame = 7.0F;
-	const char* const reason = nook_fill(block, numbers, settings);
-	CHECK((reason == nullptr) == (block.frame != 7.0F)); // nothing filled
-	return reason == nullptr ? "" : reason;
-}
-
-bool holds(const std::string& text, const char* part)
-{
-	return text.find(part) != std::string::npos;
-}
-
-} // namespace
-
 TEST_CASE("module: projections of another convention are refused by its name", "[emit]")
 {
 	const View view = viewOf(builtinLevel("cornell").cameras[0], 160, 90);
@@ -334,9 +315,7 @@ TEST_CASE("module: each setting out of range is named", "[emit]")
 	std::memcpy(numbers, &view.projection, sizeof numbers);
 	const auto refused = [&](const char* name, auto change)
 	{
-		nook_settings settings;
-		settings.width = 16;
-		settings.height = 9;
+		nook_settings settings{.width = 16, .height = 9};
 		change(settings);
 		nook_block block{};
 		const char* const reason = nook_fill(block, numbers, settings);
@@ -430,10 +409,6 @@ TEST_CASE("module: device depth needs no more settings than linear depth", "[emi
 	CAPTURE(difference.mean, difference.worst);
 	CHECK(difference.mean <= 1e-3);
 	CHECK(difference.beyond <= 1e-2);
-	double closed = 0.0;
-	for (const float value : pictures[0])
-	{
-		closed += 1.0 - static_cast<double>(value);
-	}
+	const double closed = sumOver(pictures[0], [](const float value) { return 1.0 - static_cast<double>(value); });
 	CHECK(closed > 0.03 * static_cast<double>(pictures[0].size())); // the effect is visible
 }

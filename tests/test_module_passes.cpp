@@ -8,13 +8,11 @@
 #include "testing.h"
 
 #include "core/file.h"
-#include "core/lists.h"
 #include "emit/module.h"
 #include "methods/block.h"
 #include "methods/method_table.h"
 #include "methods/passes.h"
 #include "pattern/recipe.h"
-#include "pattern/tile.h"
 #include "shade/gl_context.h"
 #include "shade/shade.h"
 
@@ -79,11 +77,8 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 	const GlTexture depths(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data());
 	const GlTexture normals(gbuffer.width_px, gbuffer.height_px, 4, &four[0].x);
 	const std::unique_ptr<GlTexture> tile = tileOf(samples);
-	std::vector<std::unique_ptr<GlTexture>> pictures;
-	for (const PictureShape& shape : plan.pictures)
-	{
-		pictures.push_back(std::make_unique<GlTexture>(shape));
-	}
+	const std::vector<std::unique_ptr<GlTexture>> pictures =
+		mapped(plan.pictures, [](const PictureShape& shape) { return std::make_unique<GlTexture>(shape); });
 	std::string entry;
 	std::vector<std::string> calls;
 	std::vector<ShadeRead> upsampled;
@@ -139,11 +134,6 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 	const GlTexture& last = *pictures[plan.passes.back().picture];
 	return last.shape.format == PictureFormat::quad ? readFloats(last) : readFloats(last);
 }
-
-} // namespace
-
-namespace
-{
 
 // The depth reads stated in a module's introduction, by call.
 int statedReads(const std::string& module, const std::string& call)
@@ -273,24 +263,7 @@ TEST_CASE("module: nothing of bent normals is in it without --bent, and its code
 	CHECK(with.find("float nookSlices(") == std::string::npos);
 }
 
-TEST_CASE("module: passes drawn as the module's head says make the picture of nook shade", "[emit]")
-{
-	const GBuffer gbuffer = builtinView("courtyard", 128, 72);
-	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
-	{
-		const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
-		for (const PassCase& one : passCases())
-		{
-			const ModuleSettings settings = moduleOf(one, target);
-			const std::vector<float> cpu = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility;
-			const std::vector<float> gl = drawn(gbuffer, settings);
-			CAPTURE(one.name, static_cast<int>(target), context.renderer());
-			checkSamePicture(cpu, gl);
-		}
-	}
-}
-
-TEST_CASE("module: whole shaders draw the picture of nook shade", "[emit]")
+TEST_CASE("module: passes drawn as the module's head says and whole shaders make the picture of nook shade", "[emit]")
 {
 	const GBuffer gbuffer = builtinView("courtyard", 128, 72);
 	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
@@ -299,11 +272,17 @@ TEST_CASE("module: whole shaders draw the picture of nook shade", "[emit]")
 		for (const PassCase& one : passCases())
 		{
 			ModuleSettings settings = moduleOf(one, target);
-			settings.main = ModuleMain::fragment;
-			settings.textures = target == GlslTarget::gl430 ? ModuleTextures::macros : ModuleTextures::fixed;
 			const std::vector<float> cpu = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility;
+			const std::vector<float> gl = drawn(gbuffer, settings);
 			CAPTURE(one.name, static_cast<int>(target), context.renderer());
-			checkSamePicture(cpu, drawn(gbuffer, settings));
+			checkSamePicture(cpu, gl);
+			ModuleSettings whole = settings;
+			whole.main = ModuleMain::fragment;
+			whole.textures = target == GlslTarget::gl430 ? ModuleTextures::macros : ModuleTextures::fixed;
+			checkSamePicture(cpu, drawn(gbuffer, whole));
+			settings.float_block = true; // the same to the bit
+			CHECK(drawn(gbuffer, settings) == gl);
+			CHECK(moduleGlsl(settings, contextOf("nook emit")).find("\tivec2 first;") == std::string::npos);
 		}
 	}
 }
@@ -459,9 +438,7 @@ TEST_CASE("module: tiles of several frames draw those of nook shade", "[emit]")
 TEST_CASE("module: slices of a tile over frames draw those of nook shade", "[emit]")
 {
 	const GBuffer gbuffer = builtinView("courtyard", 96, 54);
-	TileRecipe recipe;
-	recipe.filters = {tileFilterNamed("bilateral:5")};
-	recipe.frames = 4;
+	TileRecipe recipe{.filters = {tileFilterNamed("bilateral:5")}, .frames = 4};
 	const PatternTile tile = generateTile(slicePattern(2), recipe, RunSettings{2, {}});
 	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
 	{
@@ -480,24 +457,6 @@ TEST_CASE("module: slices of a tile over frames draw those of nook shade", "[emi
 			samples.variant = variantOfFrame(tile, frame);
 			CAPTURE(frame, static_cast<int>(target), context.renderer());
 			checkSamePicture(shadeOnCpu(gbuffer, samples, settings.shade, {2, {}}).visibility, drawn(gbuffer, settings, 1, frame));
-		}
-	}
-}
-
-TEST_CASE("module: a block of floats alone draws the same picture to the bit", "[emit]")
-{
-	const GBuffer gbuffer = builtinView("courtyard", 128, 72);
-	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
-	{
-		const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
-		for (const PassCase& one : passCases())
-		{
-			ModuleSettings settings = moduleOf(one, target);
-			const std::vector<float> mixed = drawn(gbuffer, settings);
-			settings.float_block = true;
-			CAPTURE(one.name, static_cast<int>(target), context.renderer());
-			CHECK(drawn(gbuffer, settings) == mixed);
-			CHECK(moduleGlsl(settings, contextOf("nook emit")).find("\tivec2 first;") == std::string::npos);
 		}
 	}
 }

@@ -6,13 +6,10 @@
 #include "testing.h"
 #include "vulkan_device.h"
 
-#include "core/file.h"
-#include "core/lists.h"
 #include "methods/recipes.h"
 #include "shade/shade.h"
 
 #include <iostream>
-#include <optional>
 #include <span>
 
 namespace
@@ -156,11 +153,8 @@ ComputedPicture computed(const GBuffer& gbuffer, const ModuleSettings& settings,
 	const std::vector<glm::vec4> texels = tileTexels(samples);
 	const VulkanPicture tile(vulkan, {PictureFormat::quad, static_cast<int>(texels.size()) / samples.count, samples.count},
 							 texels.data());
-	std::vector<std::unique_ptr<VulkanPicture>> pictures;
-	for (const PictureShape& shape : plan.pictures)
-	{
-		pictures.push_back(std::make_unique<VulkanPicture>(vulkan, shape));
-	}
+	const std::vector<std::unique_ptr<VulkanPicture>> pictures =
+		mapped(plan.pictures, [&](const PictureShape& shape) { return std::make_unique<VulkanPicture>(vulkan, shape); });
 	std::vector<std::string> calls;
 	ComputedPicture result{{}, std::vector<double>(static_cast<std::size_t>(repetitions)), {}, {}};
 	result.main_ms = result.all_ms;
@@ -222,102 +216,6 @@ ComputedPicture computed(const GBuffer& gbuffer, const ModuleSettings& settings,
 	result.visibility = pictures[plan.passes.back().picture]->read(vulkan);
 	return result;
 }
-
-} // namespace
-
-TEST_CASE("module: HLSL and Vulkan's GLSL compute one picture, that of nook shade", "[emit]")
-{
-	const VulkanDevice& vulkan = anyDevice();
-	if (vulkan.device() == nullptr || !toolExists("glslangValidator"))
-	{
-		WARN("skipped: found no Vulkan device or no glslangValidator, expected Debian's mesa-vulkan-drivers and glslang-tools");
-		return;
-	}
-	const GBuffer gbuffer = builtinView("courtyard", 96, 54);
-	const std::vector<PassCase> all = passCases();
-	std::vector<PassCase> cases{all[2], all[4], all[7], all[9]}; // one of each method: drivers take long to compile
-	for (const ShadeMethod method : {ShadeMethod::vo_point, ShadeMethod::slices})
-	{
-		cases.push_back({"one pass", {}});
-		cases.back().shade.method = method;
-		cases.back().shade.radius_m = 0.8;
-		cases.back().shade.slices.bent = method == ShadeMethod::slices;
-		cases.back().shade.filter = method == ShadeMethod::slices ? ShadeFilter::bilateral : ShadeFilter::none;
-	}
-	std::size_t number = 0;
-	for (const PassCase& one : cases)
-	{
-		number += 1;
-		ModuleSettings settings = moduleOf(one, GlslTarget::vulkan);
-		settings.main = ModuleMain::compute;
-		settings.tile = number % 2 == 0 ? TilePlace::array : TilePlace::texture;
-		settings.float_block = number % 3 == 0;
-		settings.textures = number % 2 == 0 ? ModuleTextures::separate : ModuleTextures::fixed;
-		CAPTURE(one.name, vulkan.name());
-		const std::vector<float> glsl = computed(gbuffer, settings).visibility;
-		if (!one.shade.slices.bent)
-		{
-			checkSamePicture(shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility, glsl);
-		}
-		settings.target = GlslTarget::hlsl60;
-		// A GPU's compiler joins multiplications and additions its own way.
-		const float most = vulkan.name().find("llvmpipe") != std::string::npos ? 1e-6F : 2e-5F;
-		const float found = largestDifference(glsl, computed(gbuffer, settings).visibility);
-		CAPTURE(1e6F * found);
-		CHECK(found <= most);
-		if (vulkan.draws() && (one.shade.method == ShadeMethod::vo_line || one.shade.method == ShadeMethod::vo_point))
-		{
-			settings.main = ModuleMain::fragment;
-			CHECK(largestDifference(glsl, computed(gbuffer, settings).visibility) <= most);
-		}
-	}
-}
-
-TEST_CASE("module: macros read the tile from another texture", "[emit]")
-{
-	if (anyDevice().device() == nullptr || !toolExists("glslangValidator"))
-	{
-		WARN("skipped: found no Vulkan device or no glslangValidator, expected Debian's mesa-vulkan-drivers and glslang-tools");
-		return;
-	}
-	const GBuffer gbuffer = builtinView("courtyard", 48, 27);
-	ModuleSettings settings = moduleOf({"vo-line", {}}, GlslTarget::vulkan);
-	settings.main = ModuleMain::compute;
-	settings.textures = ModuleTextures::macros;
-	const std::vector<float> expected = computed(gbuffer, settings).visibility;
-	const std::string glsl = "layout(set = 0, binding = 13) uniform sampler2D own;\n"
-							 "#define NOOK_VO_LINE_TILE(row, i) texelFetch(own, ivec2(row, i), 0)\n";
-	CHECK(computed(gbuffer, settings, 1, glsl).visibility == expected);
-	settings.target = GlslTarget::hlsl60;
-	settings.textures = ModuleTextures::fixed; // HLSL always has the macros
-	const std::string hlsl = "[[vk::binding(13, 0)]] Texture2D<float4> own;\n"
-							 "#define NOOK_VO_LINE_TILE(row, i) own.Load(int3(row, i, 0))\n";
-	CHECK(largestDifference(computed(gbuffer, settings, 1, hlsl).visibility, expected) <= 1e-6F);
-	CHECK(largestDifference(computed(gbuffer, settings, 1, "// none").visibility, expected) >
-		  0.1F); // the tile's own binding has depths
-}
-
-TEST_CASE("module: spirv-cross translates HLSL's SPIR-V to MSL", "[emit]")
-{
-	if (!toolExists("glslangValidator") || !toolExists("spirv-cross"))
-	{
-		WARN("skipped: found no glslangValidator or no spirv-cross, expected Debian's glslang-tools and spirv-cross");
-		return;
-	}
-	const TemporaryFolder folder;
-	for (const PassCase& one : passCases())
-	{
-		CAPTURE(one.name);
-		ModuleSettings settings = moduleOf(one, GlslTarget::hlsl60);
-		settings.main = ModuleMain::fragment;
-		spirvOf(settings, moduleGlsl(settings, contextOf("nook emit")), "0", PictureFormat::scalar, folder);
-		REQUIRE(passes("spirv-cross --msl '" + folder / "m.spv" + "' --output '" + folder / "m.metal" + "'", folder));
-		CHECK(readFile(folder / "m.metal").find("fragment main0_out main0(") != std::string::npos);
-	}
-}
-
-namespace
-{
 
 struct TimedMethod
 {
@@ -391,6 +289,97 @@ void printTimes(std::span<const TimedMethod> methods, std::span<const double> ra
 }
 
 } // namespace
+
+TEST_CASE("module: HLSL and Vulkan's GLSL compute one picture, that of nook shade", "[emit]")
+{
+	const VulkanDevice& vulkan = anyDevice();
+	if (vulkan.device() == nullptr || !toolExists("glslangValidator"))
+	{
+		WARN("skipped: found no Vulkan device or no glslangValidator, expected Debian's mesa-vulkan-drivers and glslang-tools");
+		return;
+	}
+	const GBuffer gbuffer = builtinView("courtyard", 96, 54);
+	const std::vector<PassCase> all = passCases();
+	std::vector<PassCase> cases{all[2], all[4], all[7], all[9]}; // one of each method: drivers take long to compile
+	for (const ShadeMethod method : {ShadeMethod::vo_point, ShadeMethod::slices})
+	{
+		cases.push_back({"one pass", {}});
+		cases.back().shade.method = method;
+		cases.back().shade.radius_m = 0.8;
+		cases.back().shade.slices.bent = method == ShadeMethod::slices;
+		cases.back().shade.filter = method == ShadeMethod::slices ? ShadeFilter::bilateral : ShadeFilter::none;
+	}
+	std::size_t number = 0;
+	for (const PassCase& one : cases)
+	{
+		number += 1;
+		ModuleSettings settings = moduleOf(one, GlslTarget::vulkan);
+		settings.main = ModuleMain::compute;
+		settings.tile = number % 2 == 0 ? TilePlace::array : TilePlace::texture;
+		settings.float_block = number % 3 == 0;
+		settings.textures = number % 2 == 0 ? ModuleTextures::separate : ModuleTextures::fixed;
+		CAPTURE(one.name, vulkan.name());
+		const std::vector<float> glsl = computed(gbuffer, settings).visibility;
+		if (!one.shade.slices.bent)
+		{
+			checkSamePicture(shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility, glsl);
+		}
+		settings.target = GlslTarget::hlsl60;
+		// A GPU's compiler joins multiplications and additions its own way.
+		const double most = vulkan.name().find("llvmpipe") != std::string::npos ? 1e-6 : 2e-5;
+		const double found = differenceOf(glsl, computed(gbuffer, settings).visibility).worst;
+		CAPTURE(1e6 * found);
+		CHECK(found <= most);
+		if (vulkan.draws() && (one.shade.method == ShadeMethod::vo_line || one.shade.method == ShadeMethod::vo_point))
+		{
+			settings.main = ModuleMain::fragment;
+			CHECK(differenceOf(glsl, computed(gbuffer, settings).visibility).worst <= most);
+		}
+	}
+}
+
+TEST_CASE("module: macros read the tile from another texture", "[emit]")
+{
+	if (anyDevice().device() == nullptr || !toolExists("glslangValidator"))
+	{
+		WARN("skipped: found no Vulkan device or no glslangValidator, expected Debian's mesa-vulkan-drivers and glslang-tools");
+		return;
+	}
+	const GBuffer gbuffer = builtinView("courtyard", 48, 27);
+	ModuleSettings settings = moduleOf({"vo-line", {}}, GlslTarget::vulkan);
+	settings.main = ModuleMain::compute;
+	settings.textures = ModuleTextures::macros;
+	const std::vector<float> expected = computed(gbuffer, settings).visibility;
+	const std::string glsl = "layout(set = 0, binding = 13) uniform sampler2D own;\n"
+							 "#define NOOK_VO_LINE_TILE(row, i) texelFetch(own, ivec2(row, i), 0)\n";
+	CHECK(computed(gbuffer, settings, 1, glsl).visibility == expected);
+	settings.target = GlslTarget::hlsl60;
+	settings.textures = ModuleTextures::fixed; // HLSL always has the macros
+	const std::string hlsl = "[[vk::binding(13, 0)]] Texture2D<float4> own;\n"
+							 "#define NOOK_VO_LINE_TILE(row, i) own.Load(int3(row, i, 0))\n";
+	CHECK(differenceOf(computed(gbuffer, settings, 1, hlsl).visibility, expected).worst <= 1e-6);
+	CHECK(differenceOf(computed(gbuffer, settings, 1, "// none").visibility, expected).worst >
+		  0.1); // the tile's own binding has depths
+}
+
+TEST_CASE("module: spirv-cross translates HLSL's SPIR-V to MSL", "[emit]")
+{
+	if (!toolExists("glslangValidator") || !toolExists("spirv-cross"))
+	{
+		WARN("skipped: found no glslangValidator or no spirv-cross, expected Debian's glslang-tools and spirv-cross");
+		return;
+	}
+	const TemporaryFolder folder;
+	for (const PassCase& one : passCases())
+	{
+		CAPTURE(one.name);
+		ModuleSettings settings = moduleOf(one, GlslTarget::hlsl60);
+		settings.main = ModuleMain::fragment;
+		spirvOf(settings, moduleGlsl(settings, contextOf("nook emit")), "0", PictureFormat::scalar, folder);
+		REQUIRE(passes("spirv-cross --msl '" + folder / "m.spv" + "' --output '" + folder / "m.metal" + "'", folder));
+		CHECK(readFile(folder / "m.metal").find("fragment main0_out main0(") != std::string::npos);
+	}
+}
 
 // Hidden: a table for docs/measurements/gpu.md, where the Vulkan device is a GPU.
 TEST_CASE("module times: milliseconds per megapixel of compute shaders, radii in pixels", "[.times]")

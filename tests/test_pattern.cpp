@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "testing.h"
 
-#include "core/error.h"
 #include "pattern/cells.h"
 #include "pattern/energy.h"
 #include "pattern/methods.h"
@@ -17,10 +16,7 @@ const RunSettings kTwoThreads{2, {}};
 
 Recipe recipeOf(Domain domain, int count, Method method = Method::refine)
 {
-	Recipe recipe;
-	recipe.domain = domain;
-	recipe.count = count;
-	recipe.method = method;
+	Recipe recipe{.domain = domain, .count = count, .method = method};
 	return recipe;
 }
 

@@ -4,7 +4,6 @@
 #include "testing.h"
 
 #include "bake/probes.h"
-#include "core/error.h"
 #include "core/random.h"
 #include "shade/gl_context.h"
 
@@ -96,9 +95,7 @@ TEST_CASE("bake: the driver reads probes as the CPU does", "[bake][gl]")
 	addBox(level, {-3.0, -1.0, -3.0}, {3.0, 0.0, 3.0});
 	addBox(level, {-1.0, 0.0, -1.0}, {1.0, 2.0, 1.0});
 	const Tracer tracer(level, {});
-	BakeSettings settings;
-	settings.radius_m = 1.0;
-	settings.rays = 60;
+	BakeSettings settings{.radius_m = 1.0, .rays = 60};
 	for (const double spacing_m : {0.5, 2.5, 100.0}) // the last one gives a single probe
 	{
 		const ProbeGrid grid = bakeProbes(tracer, spacing_m, settings, {});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Recipes, what they fit, and the strength and power that every method has.
-#include "core/error.h"
+#include "picture_errors.h"
+
 #include "emit/module.h"
 #include "methods/method_table.h"
 #include "methods/recipes.h"
@@ -12,11 +13,7 @@
 
 #include "nook_vo3.h"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
-
-#include <algorithm>
-#include <cmath>
 
 namespace nook
 {
@@ -42,35 +39,13 @@ Scene cornell(int width_px, int height_px)
 
 ShadeSamples lines(int count)
 {
-	Recipe recipe;
-	recipe.domain = Domain::disk;
-	recipe.count = count;
+	Recipe recipe{.domain = Domain::disk, .count = count};
 	return samplesOf(ShadeMethod::vo_line, {generatePattern(recipe, {})});
-}
-
-double greatestDifference(const std::vector<float>& one, const std::vector<float>& other)
-{
-	REQUIRE(one.size() == other.size());
-	double greatest = 0.0;
-	for (std::size_t i = 0; i < one.size(); ++i)
-	{
-		greatest = std::max(greatest, std::fabs(static_cast<double>(one[i]) - static_cast<double>(other[i])));
-	}
-	return greatest;
 }
 
 std::string messageOf(const std::string& text)
 {
-	try
-	{
-		recipesOf(text, "r.json");
-	}
-	catch (const Error& error)
-	{
-		CHECK(error.code() == ExitCode::invalid_input);
-		return error.what();
-	}
-	return {};
+	return refusalBy([&] { recipesOf(text, "r.json"); });
 }
 
 } // namespace
@@ -176,8 +151,8 @@ TEST_CASE("shade: strength and power change the finished picture alone", "[shade
 			settings.strength = 1.4;
 			settings.power = 0.7;
 			CAPTURE(static_cast<int>(filter), half);
-			CHECK(greatestDifference(scene.draw(settings, samples), expected) < 1e-6);
-			CHECK(greatestDifference(scene.draw(settings, samples, true), expected) < 1.0 / 255.0);
+			CHECK(differenceOf(scene.draw(settings, samples), expected).worst < 1e-6);
+			CHECK(differenceOf(scene.draw(settings, samples, true), expected).worst < 1.0 / 255.0);
 		}
 	}
 }
@@ -206,8 +181,8 @@ TEST_CASE("shade: three radii are the product or the least of one radius each", 
 			expected.push_back(radii == TwoRadii::product ? single[0][i] * single[1][i] * single[2][i]
 														  : std::min({single[0][i], single[1][i], single[2][i]}));
 		}
-		CHECK(greatestDifference(scene.draw(settings, samples), expected) == 0.0);
-		CHECK(greatestDifference(scene.draw(settings, samples, true), expected) < 1.0 / 255.0);
+		CHECK(differenceOf(scene.draw(settings, samples), expected).worst == 0.0);
+		CHECK(differenceOf(scene.draw(settings, samples, true), expected).worst < 1.0 / 255.0);
 	}
 }
 

@@ -4,7 +4,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/file.h"
 #include "core/random.h"
 #include "scene/reference.h"
@@ -57,8 +56,7 @@ void checkOcclusion(const Level& level, const ReferencePoint& point, ReferenceSe
 
 ReferenceSettings hard(double radius_m)
 {
-	ReferenceSettings settings;
-	settings.radius_m = radius_m;
+	ReferenceSettings settings{.radius_m = radius_m};
 	return settings;
 }
 
@@ -377,11 +375,8 @@ TEST_CASE("reference: a plane does not occlude itself, from a millimetre to 1000
 			const Tracer tracer(level, {});
 			ReferenceSettings settings = hard(kInfinity);
 			settings.rays = 256;
-			std::size_t occluded = 0;
-			for (const ReferenceValue& value : referenceAtPoints(tracer, points, settings, {}))
-			{
-				occluded += value.visibility < 1.0 ? 1U : 0U;
-			}
+			const std::size_t occluded = sumOver(referenceAtPoints(tracer, points, settings, {}), [](const ReferenceValue& value)
+												 { return value.visibility < 1.0 ? std::size_t{1} : std::size_t{0}; });
 			CAPTURE(away, size);
 			CHECK(occluded == 0);
 		}
@@ -460,8 +455,7 @@ TEST_CASE("reference: a depth that is no length is refused by its pixel", "[refe
 	Level level = emptyLevel();
 	addQuad(level, {-1.0, -1.0, -2.0}, {2.0, 0.0, 0.0}, {0.0, 2.0, 0.0});
 	const Tracer tracer(level, {});
-	View view;
-	view.projection = projectionOf({}, 1.0);
+	View view{.projection = projectionOf({}, 1.0)};
 	for (const float depth : {1e-45F, 1e-13F, 1e13F, 1e30F})
 	{
 		GBuffer gbuffer = castGBuffer(tracer, view, 4, 4, NormalKind::geometric, {});

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/json_reader.h"
 #include "core/math.h"
 #include "pattern/recipe.h"

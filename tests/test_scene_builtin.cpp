@@ -2,7 +2,6 @@
 #include "small_pictures.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "scene/builtin.h"
 #include "scene/camera_choice.h"
 #include "scene/tracer.h"

@@ -4,7 +4,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "scene/level_glb.h"
 #include "scene/reference.h"
 #include "scene/tracer.h"
@@ -154,8 +153,7 @@ double visibilityNextTo(const Level& level, glm::dvec3 corner)
 {
 	const Tracer tracer(level, {});
 	const ReferencePoint point{corner + glm::dvec3(-0.05, 0.1, 0.1), {0.0, 0.0, 1.0}, 0.0};
-	ReferenceSettings settings;
-	settings.rays = 2048;
+	ReferenceSettings settings{.rays = 2048};
 	return referenceAtPoints(tracer, std::span(&point, 1), settings, {})[0].visibility;
 }
 
@@ -327,8 +325,7 @@ TEST_CASE("reference: points in a file at map coordinates are taken to their las
 	}
 	writeFile(folder / "far.csv", "447000.35,5411000.5,120.3,0,0,1\n447000.39,5411000.5,120.3,1,0,0.5\n");
 	writeFile(folder / "near.csv", "-.05,0.1,0.1,0,0,1\n-.01,0.1,0.1,1,0,0.5\n");
-	ReferenceSettings settings;
-	settings.rays = 2048;
+	ReferenceSettings settings{.rays = 2048};
 	const Tracer far_tracer(far.level, {});
 	const Tracer near_tracer(near, {});
 	const std::vector<ReferenceValue> there = referenceAtPoints(far_tracer, readPoints(folder / "far.csv"), settings, {});

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // FBX files generated here, and what must be read from them.
 #include "fbx_files.h"
+#include "small_levels.h"
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/math.h"
 
 #include <glm/mat3x3.hpp>
@@ -16,20 +16,6 @@ namespace
 {
 
 using Numbers = std::vector<FbxTestValue>;
-
-void checkNear(glm::dvec3 found, glm::dvec3 expected, double tolerance = 1e-9)
-{
-	INFO("found " << found.x << " " << found.y << " " << found.z);
-	INFO("expected " << expected.x << " " << expected.y << " " << expected.z);
-	CHECK(glm::distance(found, expected) <= tolerance);
-}
-
-void checkBox(const Level& level, glm::dvec3 least, glm::dvec3 most)
-{
-	const Bounds bounds = boundsOf(level);
-	checkNear(bounds.least, least);
-	checkNear(bounds.most, most);
-}
 
 LoadedLevel loadScene(const TemporaryFolder& folder, const FbxTestScene& scene, const LoadSettings& settings = {})
 {
@@ -63,8 +49,7 @@ FbxTestNode& addSheet(FbxTestScene& scene, int64_t id, int64_t node)
 // Adds a material with a mask picture to the node.
 FbxTestNode& addMask(FbxTestScene& scene, int64_t node, const std::string& property = "TransparentColor")
 {
-	scene.object("Material", 300, "net", "");
-	scene.connect(300, node);
+	scene.object("Material", 300, "net", "", node);
 	FbxTestNode& texture = scene.object("Texture", 400, "mask", "");
 	texture.add("RelativeFilename", {std::string("mask.png")});
 	scene.connect(400, 300, property);
@@ -112,6 +97,36 @@ void checkPoints(const Level& level, const glm::dmat3& turn, glm::dvec3 move)
 	{
 		checkNear(level.positions[i], turn * glm::dvec3(kPoints[3 * i], kPoints[3 * i + 1], kPoints[3 * i + 2]) + move, 1e-9);
 	}
+}
+
+// A strip of three points along x at 0, 1, 2, and one at (0, 0, 1), with a bone "hand" at x = 2 rotated about z, with the given
+// weights.
+void addSkin(FbxTestScene& scene, const std::vector<double>& weights, const std::string& mode, glm::dvec3 hand_turn)
+{
+	scene.model(1, "body").set("Lcl Translation", numbers({0.0, 100.0, 0.0}));
+	scene.mesh(10, "body", {0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 0, 1}, {3, 1, -1, 3, 2, -2}, 1);
+	scene.model(2, "arm", 0, "LimbNode");
+	FbxTestNode& hand = scene.model(3, "hand", 2, "LimbNode");
+	hand.set("Lcl Translation", numbers({2.0, 0.0, 0.0})).set("Lcl Rotation", numbers({hand_turn.x, hand_turn.y, hand_turn.z}));
+	scene.object("Deformer", 60, "skin", "Skin", 10);
+	FbxTestNode& cluster = scene.object("Deformer", 61, "cluster", "Cluster", 60);
+	scene.connect(3, 61);
+	if (!mode.empty())
+	{
+		cluster.add("Mode", {mode});
+	}
+	cluster.add("Indexes", {std::vector<int32_t>{0, 1, 2}});
+	cluster.add("Weights", {weights});
+	// The mesh was bound at the origin, where the node no longer is.
+	cluster.add("Transform", {std::vector<double>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -2, 0, 0, 1}});
+	cluster.add("TransformLink", {std::vector<double>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 2, 0, 0, 1}});
+}
+
+// Positions of the points that started along x.
+std::vector<glm::dvec3> stripOf(const Level& level)
+{
+	// Corners 3 1 0, 3 2 1.
+	return {level.positions.at(2), level.positions.at(1), level.positions.at(4), level.positions.at(0)};
 }
 
 } // namespace
@@ -222,8 +237,7 @@ TEST_CASE("scene: of the levels of detail of FBX the first is read", "[scene]")
 		scene.model(1, "group", 0, by_attribute ? "Null" : "LodGroup");
 		if (by_attribute)
 		{
-			scene.object("NodeAttribute", 20, "group", "LodGroup");
-			scene.connect(20, 1);
+			scene.object("NodeAttribute", 20, "group", "LodGroup", 1);
 		}
 		for (int64_t level = 0; level < 3; ++level)
 		{
@@ -406,8 +420,7 @@ TEST_CASE("scene: pictures inside FBX files are masks", "[scene]")
 		scene.model(1, "node");
 		addSheet(scene, 10, 1);
 		addMask(scene, 1, property);
-		FbxTestNode& content = scene.object("Video", 500, "picture", "Clip").add("Content", {rowsPng()});
-		scene.connect(500, 400);
+		FbxTestNode& content = scene.object("Video", 500, "picture", "Clip", 400).add("Content", {rowsPng()});
 		CHECK(loadScene(folder, scene).level.material_list.front().coverage == 0.75);
 		const std::string text = base64(rowsPng());
 		for (const std::vector<FbxTestValue>& parts :
@@ -430,8 +443,7 @@ TEST_CASE("scene: opacity of FBX materials", "[scene]")
 		FbxTestScene scene;
 		scene.model(1, "node");
 		addSheet(scene, 10, 1);
-		FbxTestNode& material = scene.object("Material", 300, "glass", "");
-		scene.connect(300, 1);
+		FbxTestNode& material = scene.object("Material", 300, "glass", "", 1);
 		for (const auto& [name, values] : properties)
 		{
 			material.set(name, values);
@@ -530,43 +542,6 @@ TEST_CASE("scene: FBX nodes that mirror keep the front", "[scene]")
 	}
 }
 
-namespace
-{
-
-// A strip of three points along x at 0, 1, 2, and one at (0, 0, 1), with a bone "hand" at x = 2 rotated about z, with the given
-// weights.
-void addSkin(FbxTestScene& scene, const std::vector<double>& weights, const std::string& mode, glm::dvec3 hand_turn)
-{
-	scene.model(1, "body").set("Lcl Translation", numbers({0.0, 100.0, 0.0}));
-	scene.mesh(10, "body", {0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 0, 1}, {3, 1, -1, 3, 2, -2}, 1);
-	scene.model(2, "arm", 0, "LimbNode");
-	FbxTestNode& hand = scene.model(3, "hand", 2, "LimbNode");
-	hand.set("Lcl Translation", numbers({2.0, 0.0, 0.0})).set("Lcl Rotation", numbers({hand_turn.x, hand_turn.y, hand_turn.z}));
-	scene.object("Deformer", 60, "skin", "Skin");
-	scene.connect(60, 10);
-	FbxTestNode& cluster = scene.object("Deformer", 61, "cluster", "Cluster");
-	scene.connect(61, 60);
-	scene.connect(3, 61);
-	if (!mode.empty())
-	{
-		cluster.add("Mode", {mode});
-	}
-	cluster.add("Indexes", {std::vector<int32_t>{0, 1, 2}});
-	cluster.add("Weights", {weights});
-	// The mesh was bound at the origin, where the node no longer is.
-	cluster.add("Transform", {std::vector<double>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -2, 0, 0, 1}});
-	cluster.add("TransformLink", {std::vector<double>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 2, 0, 0, 1}});
-}
-
-// Positions of the points that started along x.
-std::vector<glm::dvec3> stripOf(const Level& level)
-{
-	// Corners 3 1 0, 3 2 1.
-	return {level.positions.at(2), level.positions.at(1), level.positions.at(4), level.positions.at(0)};
-}
-
-} // namespace
-
 TEST_CASE("scene: skins of FBX move points as their link mode says", "[scene]")
 {
 	const TemporaryFolder folder;
@@ -617,8 +592,7 @@ TEST_CASE("scene: a mesh of FBX that several bones hold", "[scene]")
 	FbxTestScene scene;
 	addSkin(scene, {0.0, 0.25, 0.5}, "", {0.0, 0.0, 0.0});
 	scene.model(4, "other", 0, "LimbNode").set("Lcl Translation", numbers({0.0, 0.0, 40.0}));
-	FbxTestNode& cluster = scene.object("Deformer", 62, "other", "Cluster");
-	scene.connect(62, 60);
+	FbxTestNode& cluster = scene.object("Deformer", 62, "other", "Cluster", 60);
 	scene.connect(4, 62);
 	cluster.add("Indexes", {std::vector<int32_t>{1, 2}});
 	cluster.add("Weights", {std::vector<double>{0.75, 0.5}});
@@ -628,8 +602,7 @@ TEST_CASE("scene: a mesh of FBX that several bones hold", "[scene]")
 	checkNear(strip[1], {1.0, 0.0, 30.0});
 	checkNear(strip[2], {2.0, 0.0, 20.0});
 	// A cluster without a bone has no effect.
-	scene.object("Deformer", 63, "none", "Cluster").add("Indexes", {std::vector<int32_t>{0}});
-	scene.connect(63, 60);
+	scene.object("Deformer", 63, "none", "Cluster", 60).add("Indexes", {std::vector<int32_t>{0}});
 	checkNear(stripOf(loadScene(folder, scene).level)[0], {0.0, 100.0, 0.0});
 }
 
@@ -657,8 +630,7 @@ TEST_CASE("scene: skins of FBX by dual quaternions keep the distance from the bo
 			FbxTestNode& node = scene.model(2 + i, "bone", 0, "LimbNode");
 			node.set("Lcl Rotation", numbers({90.0 * bone, 0.0, 0.0}));
 			node.set("Lcl Scaling", numbers({1.0 + bone, 1.0 + bone, 1.0 + bone}));
-			FbxTestNode& cluster = scene.object("Deformer", 61 + i, "cluster", "Cluster");
-			scene.connect(61 + i, 60);
+			FbxTestNode& cluster = scene.object("Deformer", 61 + i, "cluster", "Cluster", 60);
 			scene.connect(2 + i, 61 + i);
 			cluster.add("Indexes", {std::vector<int32_t>{0}});
 			cluster.add("Weights", {std::vector<double>{0.5}});
@@ -677,10 +649,8 @@ TEST_CASE("scene: blend shapes of FBX have the weights that the file gives", "[s
 		FbxTestScene scene;
 		scene.model(1, "node");
 		scene.mesh(10, "one", {0, 0, 0, 1, 0, 0, 0, 1, 0}, kTriangle, 1);
-		scene.object("Deformer", 70, "shapes", "BlendShape");
-		scene.connect(70, 10);
-		FbxTestNode& channel = scene.object("Deformer", 71, "channel", "BlendShapeChannel");
-		scene.connect(71, 70);
+		scene.object("Deformer", 70, "shapes", "BlendShape", 10);
+		FbxTestNode& channel = scene.object("Deformer", 71, "channel", "BlendShapeChannel", 70);
 		channel.add("DeformPercent", {percent});
 		channel.add("FullWeights", {std::vector<double>{50.0, 100.0}});
 		for (int64_t i = 0; i < 2; ++i)
@@ -736,8 +706,7 @@ TEST_CASE("scene: FBX cameras stand and look as the file says", "[scene]")
 		scene.model(1, "node");
 		scene.box(10, 1);
 		scene.model(2, "camera", 0, "Camera").set("Lcl Translation", numbers({1.0, 2.0, 3.0}));
-		FbxTestNode& attribute = scene.object("NodeAttribute", 20, "camera", "Camera");
-		scene.connect(20, 2);
+		FbxTestNode& attribute = scene.object("NodeAttribute", 20, "camera", "Camera", 2);
 		attribute.set("AspectWidth", {320.0}).set("AspectHeight", {160.0}).set("NearPlane", {0.5}).set("FarPlane", {50.0});
 		for (const auto& [name, value] : properties)
 		{

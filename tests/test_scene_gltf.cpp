@@ -32,6 +32,89 @@ template <class T> std::string wholeCorners(T one, std::size_t each)
 	return packed(values);
 }
 
+// The cube with a material of that alpha mode and COLOR_0 alphas per corner: floats, or bytes if `bytes`.
+Cube paintedCube(const std::string& mode, const std::vector<float>& alphas, bool bytes = false)
+{
+	Cube cube;
+	std::string values;
+	for (const float alpha : alphas)
+	{
+		for (int i = 0; i < 4; ++i)
+		{
+			bytes ? append(values, static_cast<uint8_t>(i < 3 ? 7 : std::lround(255.0F * alpha)))
+				  : append(values, i < 3 ? 0.5F : alpha);
+		}
+	}
+	cube.primitive()["attributes"]["COLOR_0"] = cube.accessor(cube.view(values), bytes ? 5121 : 5126, alphas.size(), "VEC4");
+	if (bytes)
+	{
+		cube.json["accessors"].back()["normalized"] = true;
+	}
+	cube.json["materials"] = {{{"name", "net"}, {"alphaMode", mode}}};
+	cube.primitive()["material"] = 0;
+	return cube;
+}
+
+// Adds an embedded picture, and a texture of it with a sampler.
+void addRows(Cube& cube, int filter)
+{
+	cube.json["images"] = {{{"uri", "data:image/png;base64," + base64(rowsPng())}}};
+	cube.json["samplers"] = {{{"magFilter", filter}, {"minFilter", filter}}};
+	cube.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
+}
+
+const Material& materialOf(const Level& level, std::size_t triangle)
+{
+	return level.material_list[level.materials[triangle]];
+}
+
+LoadedLevel loadedIn(const Cube& cube, Pose pose)
+{
+	const TemporaryFolder folder;
+	LoadSettings settings;
+	settings.pose = pose;
+	return loadText(folder / "a.gltf", gltfText(cube.json, cube.buffer), settings);
+}
+
+// Column-major.
+std::string matrixBytes(glm::dvec3 diagonal, glm::dvec3 translation)
+{
+	std::vector<float> values(16, 0.0F);
+	for (int i = 0; i < 3; ++i)
+	{
+		values[static_cast<std::size_t>(5 * i)] = static_cast<float>(diagonal[i]);
+		values[static_cast<std::size_t>(12 + i)] = static_cast<float>(translation[i]);
+	}
+	values[15] = 1.0F;
+	return packed(values);
+}
+
+// The cube with two joints: its lower half (y = 0) follows node 1 at (0, 0, 0), its upper half node 2 at (0, 3, 0), which is scaled
+// by two. In bind pose the upper joint is at y = 1. The mesh's own node is far away, which a skin ignores.
+Cube skinnedCube()
+{
+	Cube cube;
+	std::vector<uint8_t> joints;
+	std::vector<uint8_t> weights;
+	for (unsigned i = 0; i < 8; ++i)
+	{
+		joints.insert(joints.end(), {static_cast<uint8_t>((i >> 1U) & 1U), 0, 0, 0});
+		weights.insert(weights.end(), {255, 0, 0, 0});
+	}
+	nlohmann::json& attributes = cube.primitive()["attributes"];
+	attributes["JOINTS_0"] = cube.accessor(cube.view(packed(joints)), 5121, 8, "VEC4");
+	attributes["WEIGHTS_0"] = cube.accessor(cube.view(packed(weights)), 5121, 8, "VEC4");
+	cube.json["accessors"].back()["normalized"] = true;
+	const std::string bind = matrixBytes(glm::dvec3(1.0), {}) + matrixBytes(glm::dvec3(1.0), {0.0, -1.0, 0.0});
+	cube.json["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", cube.accessor(cube.view(bind), 5126, 2, "MAT4")}}};
+	cube.json["nodes"][0]["skin"] = 0;
+	cube.json["nodes"][0]["translation"] = {500, 0, 0};
+	cube.json["nodes"].push_back({{"name", "hip"}, {"children", {2}}});
+	cube.json["nodes"].push_back({{"name", "head"}, {"translation", {0, 3, 0}}, {"scale", {2, 2, 2}}});
+	cube.json["scenes"][0]["nodes"] = {0, 1};
+	return cube;
+}
+
 } // namespace
 
 TEST_CASE("scene: glTF materials keep their numbers, whatever is used first", "[scene]")
@@ -177,47 +260,6 @@ TEST_CASE("scene: parts of a glTF without triangles are findings", "[scene]")
 	CHECK(loaded.diagnosis.findings[1].first == "mesh 'cube-1'");
 	CHECK(loaded.level.triangles.size() == 12);
 }
-
-namespace
-{
-
-// The cube with a material of that alpha mode and COLOR_0 alphas per corner: floats, or bytes if `bytes`.
-Cube paintedCube(const std::string& mode, const std::vector<float>& alphas, bool bytes = false)
-{
-	Cube cube;
-	std::string values;
-	for (const float alpha : alphas)
-	{
-		for (int i = 0; i < 4; ++i)
-		{
-			bytes ? append(values, static_cast<uint8_t>(i < 3 ? 7 : std::lround(255.0F * alpha)))
-				  : append(values, i < 3 ? 0.5F : alpha);
-		}
-	}
-	cube.primitive()["attributes"]["COLOR_0"] = cube.accessor(cube.view(values), bytes ? 5121 : 5126, alphas.size(), "VEC4");
-	if (bytes)
-	{
-		cube.json["accessors"].back()["normalized"] = true;
-	}
-	cube.json["materials"] = {{{"name", "net"}, {"alphaMode", mode}}};
-	cube.primitive()["material"] = 0;
-	return cube;
-}
-
-// Adds an embedded picture, and a texture of it with a sampler.
-void addRows(Cube& cube, int filter)
-{
-	cube.json["images"] = {{{"uri", "data:image/png;base64," + base64(rowsPng())}}};
-	cube.json["samplers"] = {{{"magFilter", filter}, {"minFilter", filter}}};
-	cube.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
-}
-
-const Material& materialOf(const Level& level, std::size_t triangle)
-{
-	return level.material_list[level.materials[triangle]];
-}
-
-} // namespace
 
 TEST_CASE("scene: the alpha of COLOR_0 multiplies the base colour", "[scene]")
 {
@@ -526,58 +568,6 @@ TEST_CASE("scene: glTF that asks for more than it holds is refused", "[scene]")
 }
 
 // Skins and morph targets of glTF in the file's pose.
-
-namespace
-{
-
-LoadedLevel loadedIn(const Cube& cube, Pose pose)
-{
-	const TemporaryFolder folder;
-	LoadSettings settings;
-	settings.pose = pose;
-	return loadText(folder / "a.gltf", gltfText(cube.json, cube.buffer), settings);
-}
-
-// Column-major.
-std::string matrixBytes(glm::dvec3 diagonal, glm::dvec3 translation)
-{
-	std::vector<float> values(16, 0.0F);
-	for (int i = 0; i < 3; ++i)
-	{
-		values[static_cast<std::size_t>(5 * i)] = static_cast<float>(diagonal[i]);
-		values[static_cast<std::size_t>(12 + i)] = static_cast<float>(translation[i]);
-	}
-	values[15] = 1.0F;
-	return packed(values);
-}
-
-// The cube with two joints: its lower half (y = 0) follows node 1 at (0, 0, 0), its upper half node 2 at (0, 3, 0), which is scaled
-// by two. In bind pose the upper joint is at y = 1. The mesh's own node is far away, which a skin ignores.
-Cube skinnedCube()
-{
-	Cube cube;
-	std::vector<uint8_t> joints;
-	std::vector<uint8_t> weights;
-	for (unsigned i = 0; i < 8; ++i)
-	{
-		joints.insert(joints.end(), {static_cast<uint8_t>((i >> 1U) & 1U), 0, 0, 0});
-		weights.insert(weights.end(), {255, 0, 0, 0});
-	}
-	nlohmann::json& attributes = cube.primitive()["attributes"];
-	attributes["JOINTS_0"] = cube.accessor(cube.view(packed(joints)), 5121, 8, "VEC4");
-	attributes["WEIGHTS_0"] = cube.accessor(cube.view(packed(weights)), 5121, 8, "VEC4");
-	cube.json["accessors"].back()["normalized"] = true;
-	const std::string bind = matrixBytes(glm::dvec3(1.0), {}) + matrixBytes(glm::dvec3(1.0), {0.0, -1.0, 0.0});
-	cube.json["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", cube.accessor(cube.view(bind), 5126, 2, "MAT4")}}};
-	cube.json["nodes"][0]["skin"] = 0;
-	cube.json["nodes"][0]["translation"] = {500, 0, 0};
-	cube.json["nodes"].push_back({{"name", "hip"}, {"children", {2}}});
-	cube.json["nodes"].push_back({{"name", "head"}, {"translation", {0, 3, 0}}, {"scale", {2, 2, 2}}});
-	cube.json["scenes"][0]["nodes"] = {0, 1};
-	return cube;
-}
-
-} // namespace
 
 TEST_CASE("scene: a skin stands where its joints are", "[scene]")
 {

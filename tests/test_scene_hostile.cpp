@@ -4,7 +4,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/random.h"
 
 #include <sys/stat.h>

@@ -7,13 +7,11 @@
 #include "testing.h"
 
 #include "bake/bake.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/json_reader.h"
 #include "core/json_text.h"
 #include "core/math.h"
 #include "core/random.h"
-#include "scene/builtin.h"
 #include "scene/describe.h"
 #include "scene/level.h"
 #include "scene/level_glb.h"
@@ -27,27 +25,13 @@
 namespace
 {
 
-void checkPoint(glm::dvec3 found, glm::dvec3 expected, double tolerance = 1e-6)
-{
-	INFO("found " << found.x << " " << found.y << " " << found.z);
-	INFO("expected " << expected.x << " " << expected.y << " " << expected.z);
-	CHECK(glm::distance(found, expected) <= tolerance);
-}
-
-void checkBounds(const Level& level, glm::dvec3 least, glm::dvec3 most)
-{
-	const Bounds bounds = boundsOf(level);
-	checkPoint(bounds.least, least);
-	checkPoint(bounds.most, most);
-}
-
 // Twelve triangles of area 6, wound outward, in one mesh.
 void checkCube(const LoadedLevel& loaded, glm::dvec3 least, double edge = 1.0)
 {
 	CHECK(findingsOf(loaded.diagnosis).empty());
 	CHECK(loaded.level.triangles.size() == 12);
 	CHECK(loaded.level.meshes.size() == 1);
-	checkBounds(loaded.level, least, least + edge);
+	checkBox(loaded.level, least, least + edge);
 	CHECK(areaOf(loaded.level) == Approx(6.0 * edge * edge));
 	const LoadedLevel& l = loaded;
 	double volume = 0.0;
@@ -109,6 +93,75 @@ void checkMask(const LoadedLevel& loaded)
 	}
 }
 
+Level again(const Level& level, const GlbBake& bake = {})
+{
+	const TemporaryFolder folder;
+	writeFile(folder / "level.glb", bakedGlb(level, "nook test", bake));
+	return loadLevel(folder / "level.glb", {}, {}).level;
+}
+
+// The level from its own file, and a cell of it through another file.
+struct Parts
+{
+	Level whole;
+	CellSettings settings;
+	Level cell;
+
+	Parts(const char* name, const Bounds& box, double around_m)
+		: whole(again(loadLevel(name, {}, {}).level)), settings{box, around_m}
+	{
+		cell = again(cutCell(whole, settings, closedTriangles(whole, {}), 1));
+	}
+};
+
+struct Place
+{
+	glm::dvec3 position;
+	glm::dvec3 normal;
+};
+
+// Random positions in the box with random normals.
+std::vector<Place> placesIn(const Bounds& box, std::size_t count)
+{
+	Random random(7);
+	std::vector<Place> places;
+	while (places.size() < count)
+	{
+		const glm::dvec3 share(random.uniform(), random.uniform(), random.uniform());
+		const glm::dvec3 normal = 2.0 * glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 1.0;
+		if (glm::dot(normal, normal) > 1e-4)
+		{
+			places.push_back({box.least + share * (box.most - box.least), glm::normalize(normal)});
+		}
+	}
+	return places;
+}
+
+std::size_t ownOf(const Level& cell)
+{
+	const std::size_t count = sumOver(cell.meshes, [](const Mesh& mesh) { return mesh.around ? 0 : mesh.triangle_count; });
+	return count;
+}
+
+double greatestDifference(const Parts& parts, const VolumeSettings& settings)
+{
+	const BuiltVolumes whole = buildVolumes(parts.whole, settings, {});
+	const BuiltVolumes cell = buildVolumes(parts.cell, settings, {});
+	CHECK(cell.set.occluders.polygons.size() < whole.set.occluders.polygons.size());
+	const VolumeEvaluator all(whole.set, {});
+	const VolumeEvaluator part(cell.set, {});
+	double greatest = 0.0;
+	double sum = 0.0;
+	for (const Place& place : placesIn(parts.settings.box, 3000))
+	{
+		const double expected = all.occlusion(place.position, place.normal);
+		sum += expected;
+		greatest = std::max(greatest, std::fabs(part.occlusion(place.position, place.normal) - expected));
+	}
+	CHECK(sum > 30.0);
+	return greatest;
+}
+
 } // namespace
 
 TEST_CASE("scene: a cube is the same from every format", "[scene]")
@@ -138,9 +191,9 @@ TEST_CASE("scene: unit and up-axis of files that do not say them", "[scene]")
 	std::string text = cubeObj();
 	text.insert(text.find("f "), "v 0 0 9\nv 1 0 9\nv 0 1 9\nf 9 10 11\n");
 	const Level z_up = loadText(folder / "a.obj", text, {{0.1, UpAxis::z, false}, {}}).level;
-	checkBounds(z_up, {0.0, 0.0, -0.1}, {0.1, 0.9, 0.0});
+	checkBox(z_up, {0.0, 0.0, -0.1}, {0.1, 0.9, 0.0});
 	const Level x_up = loadText(folder / "a.obj", text, {{1.0, UpAxis::x, false}, {}}).level;
-	checkBounds(x_up, {-1.0, 0.0, 0.0}, {0.0, 1.0, 9.0});
+	checkBox(x_up, {-1.0, 0.0, 0.0}, {0.0, 1.0, 9.0});
 	for (const UpAxis up : {UpAxis::x, UpAxis::y, UpAxis::z})
 	{
 		CHECK(volumeOf(loadText(folder / "b.obj", cubeObj(), {{1.0, up, false}, {}}).level) == Approx(1.0));
@@ -164,11 +217,11 @@ TEST_CASE("scene: nodes place, repeat and mirror meshes", "[scene]")
 	CHECK(level.meshes[0].name == "far/cube");
 	CHECK(level.meshes[1].name == "mirrored/cube");
 	CHECK(level.triangles.size() == 24);
-	checkBounds(level, {-1.0, 3.0, -223423.0}, {148377.0, 1235.0, 1.0});
+	checkBox(level, {-1.0, 3.0, -223423.0}, {148377.0, 1235.0, 1.0});
 	CHECK(level.positions[0] == glm::dvec3(148376.0, 1234.0, -223423.0)); // exactly
 	Level mirrored = level;
 	mirrored.triangles.erase(mirrored.triangles.begin(), mirrored.triangles.begin() + 12);
-	checkBounds(mirrored, {-1.0, 3.0, 0.0}, {0.0, 5.0, 1.0});
+	checkBox(mirrored, {-1.0, 3.0, 0.0}, {0.0, 5.0, 1.0});
 	CHECK(areaOf(mirrored) == Approx(10.0));
 	CHECK(volumeOf(mirrored) == Approx(2.0)); // outward winding, although mirrored
 }
@@ -190,7 +243,7 @@ TEST_CASE("scene: normals turn by the inverse transpose", "[scene]")
 		json["nodes"][0]["scale"] = {2.0 * mirror, 1.0, 1.0};
 		const LoadedLevel loaded = loadText(folder / "a.gltf", gltfText(json, buffer));
 		CHECK(findingsOf(loaded.diagnosis).empty());
-		checkPoint(glm::dvec3(loaded.level.normals[0]), glm::normalize(glm::dvec3(0.5 * mirror, 1.0, 0.0)));
+		checkNear(glm::dvec3(loaded.level.normals[0]), glm::normalize(glm::dvec3(0.5 * mirror, 1.0, 0.0)), 1e-6);
 	}
 }
 
@@ -213,10 +266,10 @@ TEST_CASE("scene: cameras stand and look as the file says", "[scene]")
 	REQUIRE(level.cameras.size() == 2);
 	const LevelCamera& eye = level.cameras[0];
 	CHECK(eye.name == "eye");
-	checkPoint(glm::dvec3(eye.world_from_camera[3]), {13.0, 6.0, 9.0});
-	checkPoint(-glm::dvec3(eye.world_from_camera[2]), {-1.0, 0.0, 0.0});
-	checkPoint(glm::dvec3(eye.world_from_camera[1]), {0.0, 1.0, 0.0});
-	checkPoint(glm::dvec3(eye.world_from_camera[0]), {0.0, 0.0, -1.0});
+	checkNear(glm::dvec3(eye.world_from_camera[3]), {13.0, 6.0, 9.0});
+	checkNear(-glm::dvec3(eye.world_from_camera[2]), {-1.0, 0.0, 0.0});
+	checkNear(glm::dvec3(eye.world_from_camera[1]), {0.0, 1.0, 0.0});
+	checkNear(glm::dvec3(eye.world_from_camera[0]), {0.0, 0.0, -1.0});
 	CHECK(eye.lens.fov_y_rad == 0.9);
 	CHECK(eye.lens.near_m == 0.05);
 	CHECK(std::isinf(eye.lens.far_m));
@@ -224,8 +277,8 @@ TEST_CASE("scene: cameras stand and look as the file says", "[scene]")
 	CHECK(level.cameras[1].lens.orthographic);
 	CHECK(level.cameras[1].lens.half_height_m == 2.0);
 	const Level turned = loadText(folder / "a.gltf", gltfText(json), {{0.01, UpAxis::z, false}, {}}).level;
-	checkPoint(glm::dvec3(turned.cameras[0].world_from_camera[3]), {0.13, 0.09, -0.06});
-	checkPoint(glm::dvec3(turned.cameras[0].world_from_camera[1]), {0.0, 0.0, -1.0});
+	checkNear(glm::dvec3(turned.cameras[0].world_from_camera[3]), {0.13, 0.09, -0.06});
+	checkNear(glm::dvec3(turned.cameras[0].world_from_camera[1]), {0.0, 0.0, -1.0});
 	CHECK(turned.cameras[1].lens.half_height_m == Approx(0.02));
 }
 
@@ -532,84 +585,6 @@ TEST_CASE("advice: a level in millimetres or of many kilometres is doubted", "[s
 
 // A cell of a level gives the same results as the whole level inside it.
 
-namespace
-{
-
-Level again(const Level& level, const GlbBake& bake = {})
-{
-	const TemporaryFolder folder;
-	writeFile(folder / "level.glb", bakedGlb(level, "nook test", bake));
-	return loadLevel(folder / "level.glb", {}, {}).level;
-}
-
-// The level from its own file, and a cell of it through another file.
-struct Parts
-{
-	Level whole;
-	CellSettings settings;
-	Level cell;
-
-	Parts(const char* name, const Bounds& box, double around_m)
-		: whole(again(loadLevel(name, {}, {}).level)), settings{box, around_m}
-	{
-		cell = again(cutCell(whole, settings, closedTriangles(whole, {}), 1));
-	}
-};
-
-struct Place
-{
-	glm::dvec3 position;
-	glm::dvec3 normal;
-};
-
-// Random positions in the box with random normals.
-std::vector<Place> placesIn(const Bounds& box, std::size_t count)
-{
-	Random random(7);
-	std::vector<Place> places;
-	while (places.size() < count)
-	{
-		const glm::dvec3 share(random.uniform(), random.uniform(), random.uniform());
-		const glm::dvec3 normal = 2.0 * glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 1.0;
-		if (glm::dot(normal, normal) > 1e-4)
-		{
-			places.push_back({box.least + share * (box.most - box.least), glm::normalize(normal)});
-		}
-	}
-	return places;
-}
-
-std::size_t ownOf(const Level& cell)
-{
-	std::size_t count = 0;
-	for (const Mesh& mesh : cell.meshes)
-	{
-		count += mesh.around ? 0 : mesh.triangle_count;
-	}
-	return count;
-}
-
-double greatestDifference(const Parts& parts, const VolumeSettings& settings)
-{
-	const BuiltVolumes whole = buildVolumes(parts.whole, settings, {});
-	const BuiltVolumes cell = buildVolumes(parts.cell, settings, {});
-	CHECK(cell.set.occluders.polygons.size() < whole.set.occluders.polygons.size());
-	const VolumeEvaluator all(whole.set, {});
-	const VolumeEvaluator part(cell.set, {});
-	double greatest = 0.0;
-	double sum = 0.0;
-	for (const Place& place : placesIn(parts.settings.box, 3000))
-	{
-		const double expected = all.occlusion(place.position, place.normal);
-		sum += expected;
-		greatest = std::max(greatest, std::fabs(part.occlusion(place.position, place.normal) - expected));
-	}
-	CHECK(sum > 30.0);
-	return greatest;
-}
-
-} // namespace
-
 TEST_CASE("scene: each triangle is in one cell of a grid, and comes back from its file", "[scene]")
 {
 	const Level level = loadLevel("builtin:suburb", {}, {}).level;
@@ -698,8 +673,7 @@ TEST_CASE("volume: volumes of a cell are those of the level there, closed surfac
 TEST_CASE("bake: a cell's own vertices get the level's values, and they alone are written", "[bake]")
 {
 	const Parts parts("builtin:cave:5000", {{-10.0, -20.0, -10.0}, {10.0, 20.0, 10.0}}, 2.0);
-	BakeSettings settings;
-	settings.radius_m = 2.0;
+	BakeSettings settings{.radius_m = 2.0};
 	const Tracer whole(parts.whole, {});
 	const Tracer cell(parts.cell, {});
 	const VertexBake all = bakeVertices(whole, settings, {});

@@ -4,7 +4,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/json_reader.h"
 #include "core/json_text.h"
 #include "scene/mesh_text.h"
@@ -44,6 +43,42 @@ std::string stl(const std::string& first_vertex, const std::string& normal = "0 
 glm::dvec3 firstCorner(const Level& level)
 {
 	return level.positions.at(level.triangles.at(0).x);
+}
+
+class Folder
+{
+public:
+	Folder()
+	{
+		// Red and green differ from left to right, blue is in between.
+		constexpr std::array<uint8_t, 6> kTexels{255, 0, 128, 0, 255, 128};
+		const std::string png = pngBytes(2, 1, std::span<const uint8_t>(kTexels), {});
+		writeFile(m_folder / "two.png", png);
+		writeFile(m_folder / "my leaf.png", png);
+		writeFile(m_folder / "rows.png", rowsPng());
+	}
+
+	// The cube with one material defined by these lines.
+	LoadedLevel load(const std::string& lines, const LoadSettings& settings = {}) const
+	{
+		writeFile(m_folder / "a.mtl", "newmtl a\n" + lines + "\n");
+		return loadText(m_folder / "a.obj", "mtllib a.mtl\nusemtl a\n" + cubeObj(), settings);
+	}
+
+	// The error message for such a level, without the file's name.
+	std::string refusalOf(const std::string& lines, ExitCode code = ExitCode::invalid_input) const
+	{
+		const std::string message = refusalBy([&] { load(lines); }, code);
+		return message.empty() ? "nothing" : message.substr((m_folder / "a.mtl: ").size());
+	}
+
+private:
+	TemporaryFolder m_folder;
+};
+
+const Material& materialOf(const Level& level)
+{
+	return level.material_list.at(level.materials.at(0));
 }
 
 } // namespace
@@ -301,47 +336,6 @@ TEST_CASE("scene: STL numbers and corners", "[scene]")
 }
 
 // MTL files: combinations of d and Tr, and the options of map_d.
-
-namespace
-{
-
-class Folder
-{
-public:
-	Folder()
-	{
-		// Red and green differ from left to right, blue is in between.
-		constexpr std::array<uint8_t, 6> kTexels{255, 0, 128, 0, 255, 128};
-		const std::string png = pngBytes(2, 1, std::span<const uint8_t>(kTexels), {});
-		writeFile(m_folder / "two.png", png);
-		writeFile(m_folder / "my leaf.png", png);
-		writeFile(m_folder / "rows.png", rowsPng());
-	}
-
-	// The cube with one material defined by these lines.
-	LoadedLevel load(const std::string& lines, const LoadSettings& settings = {}) const
-	{
-		writeFile(m_folder / "a.mtl", "newmtl a\n" + lines + "\n");
-		return loadText(m_folder / "a.obj", "mtllib a.mtl\nusemtl a\n" + cubeObj(), settings);
-	}
-
-	// The error message for such a level, without the file's name.
-	std::string refusalOf(const std::string& lines, ExitCode code = ExitCode::invalid_input) const
-	{
-		const std::string message = refusalBy([&] { load(lines); }, code);
-		return message.empty() ? "nothing" : message.substr((m_folder / "a.mtl: ").size());
-	}
-
-private:
-	TemporaryFolder m_folder;
-};
-
-const Material& materialOf(const Level& level)
-{
-	return level.material_list.at(level.materials.at(0));
-}
-
-} // namespace
 
 TEST_CASE("scene: d and Tr of MTL in any order, and Tr as opacity", "[scene]")
 {

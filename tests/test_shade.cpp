@@ -5,7 +5,6 @@
 #include "small_views.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "scene/reference.h"
@@ -60,11 +59,7 @@ TEST_CASE("shade: without the normal an open plane across the view reads 1/2", "
 TEST_CASE("shade: lines and points approach the depth buffer's open share", "[shade]")
 {
 	const GBuffer gbuffer = builtinView("cornell", 160, 90);
-	ReferenceSettings truth;
-	truth.measure = ReferenceMeasure::hemisphere;
-	truth.source = MatterSource::depth;
-	truth.radius_m = 0.5;
-	truth.rays = 512;
+	ReferenceSettings truth{.measure = ReferenceMeasure::hemisphere, .source = MatterSource::depth, .radius_m = 0.5, .rays = 512};
 	const std::vector<ReferenceValue> reference = referenceOfGBuffer(nullptr, gbuffer, truth, {2, {}});
 	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point})
 	{
@@ -114,12 +109,8 @@ TEST_CASE("shade: OpenGL agrees with the CPU", "[shade]")
 		const GBuffer gbuffer = builtinView(name, 160, 90);
 		for (const ShadeMethod method : kMethods)
 		{
-			Recipe recipe;
-			recipe.domain = domainOf(method);
-			recipe.count = 9;
-			recipe.starts = 2;
-			TileRecipe tile;
-			tile.kind = TileKind::random;
+			Recipe recipe{.domain = domainOf(method), .count = 9, .starts = 2};
+			TileRecipe tile{.kind = TileKind::random};
 			const ShadeSamples samples = samplesOf(method, generateTile(generatePattern(recipe), tile, {}).variants);
 			ShadeSettings settings;
 			settings.method = method;

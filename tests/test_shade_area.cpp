@@ -68,10 +68,7 @@ TEST_CASE("shade: areas in a rectangle of a texture are those of the picture alo
 	ShadeSettings settings;
 	settings.method = ShadeMethod::vo_area;
 	settings.radius_m = 1.0;
-	Recipe recipe;
-	recipe.domain = Domain::disk;
-	recipe.count = 5;
-	recipe.starts = 2;
+	Recipe recipe{.domain = Domain::disk, .count = 5, .starts = 2};
 	const ShadeSamples samples = samplesOf(settings.method, {generatePattern(recipe)});
 	const GBuffer courtyard = builtinView("courtyard", 90, 70);
 	// Shifted by texels of the last level: bit-identical.

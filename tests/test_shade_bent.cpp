@@ -61,9 +61,7 @@ glm::vec3 turnOf(double normal)
 // A corner of two infinite planes that meet at a right angle in x = 0, 5 m away, each at 45 degrees to the view.
 GBuffer corner(int width, int height)
 {
-	Lens lens;
-	lens.orthographic = true;
-	lens.half_height_m = 3.0;
+	Lens lens{.orthographic = true, .half_height_m = 3.0};
 	GBuffer gbuffer{width, height, {glm::dmat4(1.0), projectionOf(lens, static_cast<double>(width) / height)}, 0.0, {}, {}};
 	const double s = std::sqrt(0.5);
 	for (int i = 0; i < width * height; ++i)
@@ -185,11 +183,7 @@ TEST_CASE("shade bent: nearer to the rays' bent normal than the normal, and visi
 		const Level level = builtinLevel(name);
 		const Tracer tracer(level, {});
 		const GBuffer gbuffer = castGBuffer(tracer, viewOf(level.cameras[0], 160, 90), 160, 90, NormalKind::geometric, {});
-		ReferenceSettings reference;
-		reference.measure = ReferenceMeasure::bent;
-		reference.falloff = Falloff::linear;
-		reference.radius_m = 1.5;
-		reference.rays = 64;
+		ReferenceSettings reference{.measure = ReferenceMeasure::bent, .falloff = Falloff::linear, .radius_m = 1.5, .rays = 64};
 		const std::vector<ReferenceValue> rays = referenceOfGBuffer(&tracer, gbuffer, reference, {2, {}});
 		const double plain = meanDegrees(gbuffer, gbuffer.normals, rays);
 		double few = 0.0;

@@ -5,7 +5,6 @@
 #include "small_samples.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "pattern/recipe.h"
 #include "shade/shade.h"
 
@@ -45,17 +44,8 @@ struct Views
 // E(depth + r), times w / 2z for each line, relative to the open half above the tangent plane.
 double boundOf(shade_kernels::Kernels& kernels, const ShadeSamples& samples, float depth, double radius)
 {
-	double sum = 0.0;
-	for (const glm::vec4& line : samples.samples)
-	{
-		sum += static_cast<double>(line.w / line.z);
-	}
+	const double sum = sumOver(samples.samples, [](const glm::vec4& line) { return static_cast<double>(line.w / line.z); });
 	return 2.0 * sum * static_cast<double>(kernels.nookSlack(depth, static_cast<float>(radius))) / radius;
-}
-
-std::vector<float> shaded(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
-{
-	return shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
 }
 
 float leastOf(const std::vector<float>& values)
@@ -151,11 +141,11 @@ TEST_CASE("camera: the same view through every projection and format, within the
 			const ShadeSamples samples = samplesFor(kSampled[m], 9);
 			ShadeSettings settings;
 			settings.method = kSampled[m];
-			const std::vector<float> truth = shaded(gbuffer, samples, settings);
+			const std::vector<float> truth = visibilityOf(gbuffer, samples, settings);
 			for (const int bits : {16, 24, 32})
 			{
 				settings.depth = formatOf(convention, bits);
-				const std::vector<float> found = shaded(through(gbuffer, convention, bits), samples, settings);
+				const std::vector<float> found = visibilityOf(through(gbuffer, convention, bits), samples, settings);
 				const Difference difference = differenceOf(found, truth);
 				CAPTURE(convention.name, bits, kNames[m], difference.mean, difference.worst);
 				CHECK(difference.mean <= (bits == 16 ? 0.015 : 1.5e-4));
@@ -202,9 +192,9 @@ TEST_CASE("camera: no format makes an open plane occlude itself", "[shade]")
 					settings.beta = 0.0;
 					settings.depth = formatOf(convention, bits);
 					CAPTURE(convention.name, static_cast<int>(method), bits, tilt);
-					CHECK(leastOf(shaded(plane, samples, settings)) >= 1.0F - 1.0F / 255.0F);
+					CHECK(leastOf(visibilityOf(plane, samples, settings)) >= 1.0F - 1.0F / 255.0F);
 					settings.depth = {};
-					without = std::min(without, static_cast<double>(leastOf(shaded(plane, samples, settings))));
+					without = std::min(without, static_cast<double>(leastOf(visibilityOf(plane, samples, settings))));
 				}
 			}
 		}
@@ -231,11 +221,11 @@ TEST_CASE("camera: normals of 8 bits", "[shade]")
 				CAPTURE(static_cast<int>(method), bits, tilt);
 				// Rotating the plane by an angle a removes a / pi of the half ball: at most 0.55 / 255 with 8 bits, about twice
 				// that with nine lines. Of nine points, one on the plane may be on either side.
-				const std::vector<float> found = shaded(plane, samples, settings);
+				const std::vector<float> found = visibilityOf(plane, samples, settings);
 				CHECK(leastOf(found) >= (method == ShadeMethod::vo_point ? 1.0F - 1.01F / 9.0F : 1.0F - 1.25F / 255.0F));
 				CHECK(std::accumulate(found.begin(), found.end(), 0.0) >= (1.0 - 1.0 / 255.0) * static_cast<double>(found.size()));
 				settings.normal_bits = 32;
-				without = std::min(without, static_cast<double>(leastOf(shaded(plane, samples, settings))));
+				without = std::min(without, static_cast<double>(leastOf(visibilityOf(plane, samples, settings))));
 			}
 		}
 	}
@@ -265,7 +255,8 @@ TEST_CASE("camera: sky is no neighbour", "[shade]")
 			if (convention.name != std::string("off-centre") && convention.name != std::string("jittered"))
 			{
 				CAPTURE(convention.name, static_cast<int>(method));
-				CHECK(leastOf(shaded(through(gbuffer, convention, 24), samplesFor(method, 9), settings)) >= 1.0F - 1.0F / 255.0F);
+				CHECK(leastOf(visibilityOf(through(gbuffer, convention, 24), samplesFor(method, 9), settings)) >=
+					  1.0F - 1.0F / 255.0F);
 			}
 		}
 	}
@@ -296,7 +287,7 @@ TEST_CASE("camera: a rectangle of a texture is shaded as the picture alone, what
 		const ShadeSamples samples = samplesFor(method, 9);
 		ShadeSettings settings;
 		settings.method = method;
-		const std::vector<float> expected = shaded(part, samples, settings);
+		const std::vector<float> expected = visibilityOf(part, samples, settings);
 		shade_kernels::Kernels kernels;
 		kernels.nook = blockOf(frameOf(part), samples, settings);
 		kernels.nook.origin = glm::vec2(x0, y0);
@@ -329,12 +320,12 @@ TEST_CASE("camera: with a guard band as wide as the radius the picture's border 
 	ShadeSettings settings;
 	settings.max_radius_px = 20.0;
 	const ShadeSamples samples = samplesFor(ShadeMethod::vo_line, 9);
-	const std::vector<float> truth = cut(shaded(whole, samples, settings), 256, 64, 32, 128, 64);
+	const std::vector<float> truth = cut(visibilityOf(whole, samples, settings), 256, 64, 32, 128, 64);
 	double last = 1.0;
 	for (const int guard : {0, 3, 6, 12})
 	{
 		const int width = 128 + 2 * guard;
-		const std::vector<float> drawn = shaded(cut(whole, 64 - guard, 32 - guard, width, 64 + 2 * guard), samples, settings);
+		const std::vector<float> drawn = visibilityOf(cut(whole, 64 - guard, 32 - guard, width, 64 + 2 * guard), samples, settings);
 		const Difference difference = differenceOf(cut(drawn, width, guard, guard, 128, 64), truth);
 		CAPTURE(guard, difference.mean, difference.beyond);
 		CHECK(difference.mean < 0.75 * last);
@@ -387,11 +378,11 @@ TEST_CASE("camera: figures of formats", "[.figures]")
 				const ShadeSamples samples = samplesFor(kSampled[m], 9);
 				ShadeSettings settings;
 				settings.method = kSampled[m];
-				const std::vector<float> truth = shaded(gbuffer, samples, settings);
+				const std::vector<float> truth = visibilityOf(gbuffer, samples, settings);
 				settings.depth = formatOf(convention, bits);
-				const Difference difference = differenceOf(shaded(coarse, samples, settings), truth);
+				const Difference difference = differenceOf(visibilityOf(coarse, samples, settings), truth);
 				settings.depth = {};
-				const Difference without = differenceOf(shaded(coarse, samples, settings), truth);
+				const Difference without = differenceOf(visibilityOf(coarse, samples, settings), truth);
 				std::printf(" %s %.1g (signed %+.1g; without slack %.1g, %+.1g)", kNames[m], difference.mean,
 							difference.signed_mean, without.mean, without.signed_mean);
 			}
@@ -409,16 +400,16 @@ TEST_CASE("camera: figures of formats", "[.figures]")
 			ShadeSettings settings;
 			settings.method = kSampled[m];
 			const Difference without =
-				differenceOf(shaded(withNormals(gbuffer, bits), samples, settings), shaded(gbuffer, samples, settings));
+				differenceOf(visibilityOf(withNormals(gbuffer, bits), samples, settings), visibilityOf(gbuffer, samples, settings));
 			settings.beta = 0.0;
 			float least[2] = {1.0F, 1.0F};
 			for (const double tilt : {0.0, 20.0, 60.0, 80.0})
 			{
 				const GBuffer plane = withNormals(planeAt(projection, 96, 54, tilt), bits);
 				settings.normal_bits = 32;
-				least[0] = std::min(least[0], leastOf(shaded(plane, samples, settings)));
+				least[0] = std::min(least[0], leastOf(visibilityOf(plane, samples, settings)));
 				settings.normal_bits = bits;
-				least[1] = std::min(least[1], leastOf(shaded(plane, samples, settings)));
+				least[1] = std::min(least[1], leastOf(visibilityOf(plane, samples, settings)));
 			}
 			std::printf(" %s mean %.1g, least of planes %.4f, told of the bits %.4f;", kNames[m], without.mean,
 						static_cast<double>(least[0]), static_cast<double>(least[1]));
@@ -427,11 +418,11 @@ TEST_CASE("camera: figures of formats", "[.figures]")
 	}
 	const GBuffer whole = builtinView("courtyard", 256, 128);
 	const ShadeSamples samples = samplesFor(ShadeMethod::vo_line, 9);
-	const std::vector<float> truth = cut(shaded(whole, samples, {}), 256, 64, 32, 128, 64);
+	const std::vector<float> truth = cut(visibilityOf(whole, samples, {}), 256, 64, 32, 128, 64);
 	for (const int guard : {0, 3, 6, 12, 24})
 	{
 		const int width = 128 + 2 * guard;
-		const std::vector<float> drawn = shaded(cut(whole, 64 - guard, 32 - guard, width, 64 + 2 * guard), samples, {});
+		const std::vector<float> drawn = visibilityOf(cut(whole, 64 - guard, 32 - guard, width, 64 + 2 * guard), samples, {});
 		const Difference difference = differenceOf(cut(drawn, width, guard, guard, 128, 64), truth);
 		std::printf("guard band of %2d pixels: mean %.1g worst %.2f pixels that differ %.4f\n", guard, difference.mean,
 					difference.worst, difference.beyond);

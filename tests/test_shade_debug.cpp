@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Debug views: expected values for planes, steps and bands, consistency with other outputs, and the CPU compared with OpenGL.
 #include "picture_errors.h"
+#include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
@@ -23,9 +24,7 @@ std::vector<Pattern> variantsFor(ShadeMethod method, int count)
 	recipe.count = count;
 	recipe.starts = 2;
 	recipe.order = Order::progressive;
-	TileRecipe tile;
-	tile.kind = TileKind::random;
-	tile.size = 2;
+	TileRecipe tile{.size = 2, .kind = TileKind::random};
 	return generateTile(generatePattern(recipe), tile, {}).variants;
 }
 
@@ -42,11 +41,6 @@ ShadeSettings settingsFor(ShadeMethod method, DebugView view, double radius_m)
 	settings.depth_levels = method == ShadeMethod::alchemy ? 5 : 0;
 	settings.debug = view;
 	return settings;
-}
-
-std::vector<float> drawn(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
-{
-	return shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
 }
 
 // A wall across a parallel view at depth 5, 16 x 16 pixels of 0.375 m, its right half `step_m` nearer.
@@ -68,7 +62,7 @@ TEST_CASE("shade debug: edges are the pixels on both sides of a step, a fold or 
 	{
 		const GBuffer gbuffer = planeAt(projectionOf(lensOf(tilt == 60.0 ? 30.0 : 0.0), 1.0), 32, 32, tilt);
 		const ShadeSettings settings = settingsFor(ShadeMethod::vo_line, DebugView::edges, 0.5);
-		const std::vector<float> edges = drawn(gbuffer, samplesFor(settings), settings);
+		const std::vector<float> edges = visibilityOf(gbuffer, samplesFor(settings), settings);
 		CAPTURE(tilt);
 		for (std::size_t i = 0; i < edges.size(); ++i)
 		{
@@ -100,7 +94,7 @@ TEST_CASE("shade debug: edges are the pixels on both sides of a step, a fold or 
 		{
 			ShadeSettings settings = settingsFor(ShadeMethod::alchemy, DebugView::edges, 0.5);
 			settings.half_resolution = half;
-			const std::vector<float> edges = drawn(gbuffer, samplesFor(settings), settings);
+			const std::vector<float> edges = visibilityOf(gbuffer, samplesFor(settings), settings);
 			const std::size_t side = half ? 2 : 1;
 			for (std::size_t i = 0; i < edges.size(); ++i)
 			{
@@ -111,8 +105,8 @@ TEST_CASE("shade debug: edges are the pixels on both sides of a step, a fold or 
 			}
 		}
 	}
-	CHECK(drawn(stepView(0.02), samplesFor(settingsFor(ShadeMethod::vo_line, DebugView::edges, 0.5)),
-				settingsFor(ShadeMethod::vo_line, DebugView::edges, 0.5)) == std::vector<float>(256, 0.0F));
+	CHECK(visibilityOf(stepView(0.02), samplesFor(settingsFor(ShadeMethod::vo_line, DebugView::edges, 0.5)),
+					   settingsFor(ShadeMethod::vo_line, DebugView::edges, 0.5)) == std::vector<float>(256, 0.0F));
 }
 
 TEST_CASE("shade debug: samples are the band's, and the picture hangs on no other", "[shade]")
@@ -128,13 +122,13 @@ TEST_CASE("shade debug: samples are the band's, and the picture hangs on no othe
 			const bool none = radius_px < 0.5 && method != ShadeMethod::alchemy;
 			const int taken = none ? 0 : radius_px < 3.0 ? 2 : radius_px < 6.0 ? 4 : 6;
 			CAPTURE(static_cast<int>(method), radius_px);
-			for (const float share : drawn(gbuffer, samples, settings))
+			for (const float share : visibilityOf(gbuffer, samples, settings))
 			{
 				REQUIRE(share == Approx(taken / 6.0).margin(1e-6));
 			}
 			settings.debug.reset();
 			settings.beta = 0.0;
-			const std::vector<float> visibility = drawn(gbuffer, samples, settings);
+			const std::vector<float> visibility = visibilityOf(gbuffer, samples, settings);
 			// An infinite weight spoils every pixel that uses the sample.
 			const auto spoilt = [&](int first)
 			{
@@ -144,16 +138,16 @@ TEST_CASE("shade debug: samples are the band's, and the picture hangs on no othe
 					const bool changed = static_cast<int>(i % 6) >= first;
 					others.samples[i].w = changed ? std::numeric_limits<float>::infinity() : others.samples[i].w;
 				}
-				return drawn(gbuffer, others, settings) != visibility;
+				return visibilityOf(gbuffer, others, settings) != visibility;
 			};
 			CHECK_FALSE(spoilt(taken));
 			CHECK((taken == 0 || spoilt(taken - 1)));
 		}
 	}
 	ShadeSettings hbao = settingsFor(ShadeMethod::hbao, DebugView::samples, 0.375 * 3.5);
-	CHECK(drawn(gbuffer, samplesFor(hbao), hbao) == std::vector<float>(256, 0.5F)); // 3 of 6 steps: one per pixel
+	CHECK(visibilityOf(gbuffer, samplesFor(hbao), hbao) == std::vector<float>(256, 0.5F)); // 3 of 6 steps: one per pixel
 	ShadeSettings sao = settingsFor(ShadeMethod::sao, DebugView::samples, 1.0);
-	CHECK(drawn(gbuffer, samplesFor(sao), sao) == std::vector<float>(256, 1.0F));
+	CHECK(visibilityOf(gbuffer, samplesFor(sao), sao) == std::vector<float>(256, 1.0F));
 }
 
 TEST_CASE("shade debug: with two radii samples are the mean of both", "[shade]")
@@ -162,7 +156,7 @@ TEST_CASE("shade debug: with two radii samples are the mean of both", "[shade]")
 	settings.volume.radii = TwoRadii::minimum;
 	settings.volume.second_radius_m = 0.375 * 7.0;
 	settings.bands = {2, 3.0, 6.0};
-	CHECK(drawn(stepView(0.0), samplesFor(settings), settings) == std::vector<float>(256, 0.75F));
+	CHECK(visibilityOf(stepView(0.0), samplesFor(settings), settings) == std::vector<float>(256, 0.75F));
 }
 
 TEST_CASE("shade debug: levels are those of the samples' distances", "[shade]")
@@ -171,11 +165,11 @@ TEST_CASE("shade debug: levels are those of the samples' distances", "[shade]")
 	GBuffer gbuffer = planeAt(projectionOf(lensOf(0.0), 1.0), 256, 256, 0.0);
 	ShadeSettings settings = settingsFor(ShadeMethod::alchemy, DebugView::lod, 96.0 * 6.0 / 256.0);
 	ShadeSamples samples{1, 2, {{0.34F, 0.0F, 0.0F, 0.5F}, {0.0F, 0.99F, 0.0F, 0.5F}}};
-	CHECK(drawn(gbuffer, samples, settings)[128 * 256 + 128] == Approx((2.0 + 3.0) / 2.0 / 5.0));
+	CHECK(visibilityOf(gbuffer, samples, settings)[128 * 256 + 128] == Approx((2.0 + 3.0) / 2.0 / 5.0));
 	settings.depth_levels = 2;
-	CHECK(drawn(gbuffer, samples, settings)[128 * 256 + 128] == 1.0F);
+	CHECK(visibilityOf(gbuffer, samples, settings)[128 * 256 + 128] == 1.0F);
 	settings.radius_m /= 8.0;
-	CHECK(drawn(gbuffer, samples, settings)[128 * 256 + 128] == 0.0F);
+	CHECK(visibilityOf(gbuffer, samples, settings)[128 * 256 + 128] == 0.0F);
 
 	// Areas: one texel of 2^l pixels if the area's side is between 2^l / 0.6 and 2^(l + 1) / 0.6.
 	settings = settingsFor(ShadeMethod::vo_area, DebugView::lod, 96.0 * 6.0 / 256.0);
@@ -183,10 +177,10 @@ TEST_CASE("shade debug: levels are those of the samples' distances", "[shade]")
 	{
 		const double side_px = 2.4 * (1 << level); // times 2^0.75 = 1.68: 1.43 of a texel
 		samples = {1, 1, {glm::vec4(0.0F, 0.0F, static_cast<float>(std::log2(side_px / 96.0)), 1.0F)}};
-		CHECK(drawn(gbuffer, samples, settings)[128 * 256 + 128] == Approx(level / 6.0));
+		CHECK(visibilityOf(gbuffer, samples, settings)[128 * 256 + 128] == Approx(level / 6.0));
 	}
 	settings = settingsFor(ShadeMethod::sao, DebugView::lod, 8.0 * 6.0 / 256.0);
-	CHECK(drawn(gbuffer, samplesFor(settings), settings) == std::vector<float>(256 * 256, 0.0F));
+	CHECK(visibilityOf(gbuffer, samplesFor(settings), settings) == std::vector<float>(256 * 256, 0.0F));
 }
 
 TEST_CASE("shade debug: layers are those of the tiles and depths that need them", "[shade]")
@@ -200,7 +194,7 @@ TEST_CASE("shade debug: layers are those of the tiles and depths that need them"
 	ShadeSettings settings = settingsFor(ShadeMethod::statvo, DebugView::layers, 0.6);
 	const auto layersAt = [&](std::size_t x, std::size_t y)
 	{
-		return drawn(gbuffer, samplesFor(settings), settings)[y * 64 + x];
+		return visibilityOf(gbuffer, samplesFor(settings), settings)[y * 64 + x];
 	};
 	CHECK(layersAt(10, 40) == 0.25F); // smooth: all as one layer
 	CHECK(layersAt(47, 40) == 1.0F);
@@ -224,13 +218,10 @@ TEST_CASE("shade debug: noise is the deviation of the variants' pictures, and 0 
 		ShadeSettings settings = settingsFor(method, DebugView::noise, 0.5);
 		const int count = method == ShadeMethod::crytek ? 8 : 6;
 		const std::vector<Pattern> variants = variantsFor(method, count);
-		const std::vector<float> noise = drawn(gbuffer, samplesOf(method, variants), settings);
+		const std::vector<float> noise = visibilityOf(gbuffer, samplesOf(method, variants), settings);
 		settings.debug.reset();
-		std::vector<std::vector<float>> pictures;
-		for (const Pattern& variant : variants)
-		{
-			pictures.push_back(drawn(gbuffer, samplesOf(method, {variant}), settings));
-		}
+		const std::vector<std::vector<float>> pictures =
+			mapped(variants, [&](const Pattern& variant) { return visibilityOf(gbuffer, samplesOf(method, {variant}), settings); });
 		double most = 0.0;
 		for (std::size_t i = 0; i < noise.size(); ++i)
 		{
@@ -251,7 +242,7 @@ TEST_CASE("shade debug: noise is the deviation of the variants' pictures, and 0 
 	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point})
 	{
 		const ShadeSettings settings = settingsFor(method, DebugView::noise, 1.0);
-		for (const float value : drawn(wall, samplesFor(settings), settings))
+		for (const float value : visibilityOf(wall, samplesFor(settings), settings))
 		{
 			REQUIRE(value <= 1e-3F);
 		}

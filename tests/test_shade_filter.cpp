@@ -16,11 +16,8 @@ namespace
 
 PatternTile nineLines(TileKind kind)
 {
-	Recipe recipe;
-	recipe.count = 9;
-	recipe.domain = Domain::disk;
-	TileRecipe tile;
-	tile.kind = kind;
+	Recipe recipe{.domain = Domain::disk, .count = 9};
+	TileRecipe tile{.kind = kind};
 	return generateTile(generatePattern(recipe), tile, {2, {}});
 }
 
@@ -275,10 +272,7 @@ TEST_CASE("shade filter: on the method's own terms an optimised tile leaves less
 {
 	// Compared with very many samples. In smaller pictures the blur is worse than the error of nine lines.
 	const GBuffer gbuffer = builtinView("cornell", 960, 540);
-	Recipe recipe;
-	recipe.domain = Domain::disk;
-	recipe.count = 400;
-	recipe.method = Method::vogel;
+	Recipe recipe{.domain = Domain::disk, .count = 400, .method = Method::vogel};
 	const auto with = [&](const ShadeSamples& samples, ShadeFilter filter)
 	{
 		return shadeOnCpu(gbuffer, samples, settingsOf({filter, 13, false}, 1.0), {2, {}}).visibility;

@@ -23,10 +23,7 @@ View shifted(View view, double x_px, double y_px, int width, int height)
 
 ShadeSamples manyLines()
 {
-	Recipe recipe;
-	recipe.domain = Domain::disk;
-	recipe.count = 64;
-	recipe.method = Method::vogel;
+	Recipe recipe{.domain = Domain::disk, .count = 64, .method = Method::vogel};
 	return samplesOf(ShadeMethod::vo_line, {generatePattern(recipe)});
 }
 
@@ -43,8 +40,7 @@ struct Drawn
 		kernels.normals = gbuffer.normals;
 		kernels.cells = &plane;
 	}
-	Drawn(const Drawn&) = delete;
-	Drawn& operator=(const Drawn&) = delete;
+	Drawn& operator=(Drawn&&) = delete;
 
 	std::vector<float> depths;
 	PicturePlane plane;

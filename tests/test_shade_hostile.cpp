@@ -4,7 +4,6 @@
 #include "small_views.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/random.h"
 
 namespace
@@ -50,11 +49,8 @@ TEST_CASE("hostile views: shading returns visibility or an error that says why",
 		try
 		{
 			const Shaded shaded = shadeOnCpu(view.gbuffer, view.samples, view.settings, {1, {}});
-			std::size_t wrong = 0;
-			for (const float value : shaded.visibility)
-			{
-				wrong += value >= 0.0F && value <= 1.0F ? 0U : 1U;
-			}
+			const std::size_t wrong = sumOver(shaded.visibility, [](const float value)
+											  { return value >= 0.0F && value <= 1.0F ? std::size_t{0} : std::size_t{1}; });
 			INFO("case " << i << ", " << nameOf(view.settings.method));
 			REQUIRE(wrong == 0);
 			taken += 1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Coarser depth levels for distant samples.
 #include "picture_errors.h"
+#include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
@@ -14,10 +15,7 @@ namespace
 
 ShadeSamples manyOf(ShadeMethod method, int count)
 {
-	Recipe recipe;
-	recipe.domain = domainOf(method);
-	recipe.count = count;
-	recipe.method = Method::vogel;
+	Recipe recipe{.domain = domainOf(method), .count = count, .method = Method::vogel};
 	return samplesOf(method, {generatePattern(recipe)});
 }
 
@@ -28,11 +26,6 @@ ShadeSettings alchemyOf(double radius_m, int levels)
 	settings.radius_m = radius_m;
 	settings.depth_levels = levels;
 	return settings;
-}
-
-std::vector<float> valuesOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
-{
-	return shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
 }
 
 } // namespace
@@ -47,7 +40,7 @@ TEST_CASE("shade levels: an open plane reads 1 without a bias, however coarse it
 			ShadeSettings settings = alchemyOf(4.0, 5);
 			settings.beta = 0.0;
 			CAPTURE(fov, tilt);
-			for (const float v : valuesOf(gbuffer, manyOf(settings.method, 12), settings))
+			for (const float v : visibilityOf(gbuffer, manyOf(settings.method, 12), settings))
 			{
 				REQUIRE(v == Approx(1.0).margin(1.0 / 255.0));
 			}
@@ -101,11 +94,11 @@ TEST_CASE("shade levels: used from sixteen pixels on, and then for little", "[sh
 	const ShadeSamples samples = manyOf(ShadeMethod::alchemy, 16);
 	ShadeSettings near = alchemyOf(1.0, 0);
 	near.max_radius_px = 15.9;
-	const std::vector<float> none = valuesOf(gbuffer, samples, near);
+	const std::vector<float> none = visibilityOf(gbuffer, samples, near);
 	near.depth_levels = 5;
-	CHECK(valuesOf(gbuffer, samples, near) == none);
-	const std::vector<float> fine = valuesOf(gbuffer, samples, alchemyOf(2.0, 0));
-	const double moved = rmseOf(valuesOf(gbuffer, samples, alchemyOf(2.0, 5)), fine);
+	CHECK(visibilityOf(gbuffer, samples, near) == none);
+	const std::vector<float> fine = visibilityOf(gbuffer, samples, alchemyOf(2.0, 0));
+	const double moved = rmseOf(visibilityOf(gbuffer, samples, alchemyOf(2.0, 5)), fine);
 	CAPTURE(moved);
 	CHECK(moved > 0.0);
 	CHECK(moved < 0.02);

@@ -23,10 +23,7 @@ Pattern patternFor(ShadeMethod method, int count)
 	{
 		return crytekPoints(count);
 	}
-	Recipe recipe;
-	recipe.domain = domainOf(method);
-	recipe.count = count;
-	recipe.starts = 2;
+	Recipe recipe{.domain = domainOf(method), .count = count, .starts = 2};
 	return generatePattern(recipe);
 }
 
@@ -37,8 +34,7 @@ ShadeSamples samplesFor(const ShadeSettings& settings)
 	{
 		return ownSamples(settings);
 	}
-	TileRecipe tile;
-	tile.kind = TileKind::random;
+	TileRecipe tile{.kind = TileKind::random};
 	const int count = settings.method == ShadeMethod::crytek ? 16 : 9;
 	return samplesOf(settings.method, generateTile(patternFor(settings.method, count), tile, {}).variants);
 }
@@ -357,8 +353,7 @@ TEST_CASE("shade published: the same picture through other projections of the sa
 	// A parallel view compared with one from 3 km away through an equally narrow lens, and with an off-centre part of a wider one.
 	const GBuffer parallel = floorWith(128, [](double x) { return x > 1.0 ? 0.4 : 0.0; });
 	GBuffer far = parallel;
-	Lens lens;
-	lens.fov_y_rad = 2.0 * std::atan(3.0 / 3000.0);
+	Lens lens{.fov_y_rad = 2.0 * std::atan(3.0 / 3000.0)};
 	far.view.projection = projectionOf(lens, 1.0);
 	for (float& depth : far.depth)
 	{

@@ -181,10 +181,7 @@ TEST_CASE("shade published: GTAO is nearer to rays than horizon-based occlusion 
 		const Level level = builtinLevel(name);
 		const Tracer tracer(level, {});
 		const GBuffer gbuffer = castGBuffer(tracer, viewOf(level.cameras[0], 240, 135), 240, 135, NormalKind::geometric, {});
-		ReferenceSettings reference;
-		reference.falloff = Falloff::linear;
-		reference.radius_m = 1.5;
-		reference.rays = 64;
+		ReferenceSettings reference{.falloff = Falloff::linear, .radius_m = 1.5, .rays = 64};
 		const std::vector<ReferenceValue> rays = referenceOfGBuffer(&tracer, gbuffer, reference, {2, {}});
 		std::map<ShadeMethod, double> errors;
 		for (const ShadeMethod method : {ShadeMethod::gtao, ShadeMethod::bitmask, ShadeMethod::hbao})

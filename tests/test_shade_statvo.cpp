@@ -4,7 +4,6 @@
 #include "small_views.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/random.h"
 #include "scene/reference.h"
 #include "shade/gl_context.h"
@@ -28,10 +27,7 @@ std::vector<float> visibilityOf(const GBuffer& gbuffer, const ShadeSettings& set
 // Seen from above through a parallel projection, one pixel per centimetre: heights in metres above a ground 5 m away.
 GBuffer heights(int width, int height, const std::function<double(int, int)>& at)
 {
-	Lens lens;
-	lens.orthographic = true;
-	lens.half_height_m = 0.005 * height;
-	lens.far_m = 100.0;
+	Lens lens{.orthographic = true, .half_height_m = 0.005 * height, .far_m = 100.0};
 	const glm::dmat4 projection = projectionOf(lens, static_cast<double>(width) / height);
 	GBuffer gbuffer{width, height, {glm::dmat4(1.0), projection}, 0.0, {}, {}};
 	for (int y = 0; y < height; ++y)
@@ -47,11 +43,7 @@ GBuffer heights(int width, int height, const std::function<double(int, int)>& at
 
 double meanOf(const std::vector<float>& values)
 {
-	double sum = 0.0;
-	for (const float value : values)
-	{
-		sum += static_cast<double>(value);
-	}
+	const double sum = sumOver(values, [](const float value) { return static_cast<double>(value); });
 	return sum / static_cast<double>(values.size());
 }
 
@@ -95,11 +87,7 @@ TEST_CASE("statvo: where all heights are in the box, without the normal, it is t
 		  "[shade][statvo]")
 {
 	const GBuffer gbuffer = heights(96, 64, [](int x, int y) { return 0.1 * std::sin(0.11 * x) * std::cos(0.17 * y) + 0.002 * x; });
-	ReferenceSettings truth;
-	truth.measure = ReferenceMeasure::box;
-	truth.source = MatterSource::depth;
-	truth.radius_m = 0.2;
-	truth.rays = 2048;
+	ReferenceSettings truth{.measure = ReferenceMeasure::box, .source = MatterSource::depth, .radius_m = 0.2, .rays = 2048};
 	const std::vector<ReferenceValue> reference = referenceOfGBuffer(nullptr, gbuffer, truth, {2, {}});
 	for (ShadeSettings settings : {statVo(1), statVo(4), uniform(32), statVo(4, 4)})
 	{

@@ -5,7 +5,6 @@
 #include "small_views.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/random.h"
 #include "shade/gl_context.h"
 #include "shade/run_passes.h"
@@ -54,8 +53,7 @@ std::vector<Planes> picturesOf(const GBuffer& gbuffer, const ShadeSettings& sett
 // Depths of 1 to 101 m, most of them near: noise on steps.
 GBuffer noise(int width, int height)
 {
-	Lens lens;
-	lens.fov_y_rad = 1.0;
+	Lens lens{.fov_y_rad = 1.0};
 	const glm::dmat4 projection = projectionOf(lens, static_cast<double>(width) / height);
 	GBuffer gbuffer{width, height, {glm::dmat4(1.0), projection}, 0.0, {}, {}};
 	const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);

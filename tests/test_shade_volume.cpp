@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volumetric obscurance with further features: areas, thickness, falloff, two radii, pairs, bands.
 #include "picture_errors.h"
+#include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/random.h"
 #include "methods/block.h"
 #include "methods/kernels.h"
@@ -18,27 +18,15 @@ namespace
 
 Recipe diskRecipe(int count, bool symmetric = false)
 {
-	Recipe recipe;
-	recipe.domain = Domain::disk;
-	recipe.count = count;
-	recipe.starts = 2;
-	recipe.symmetric = symmetric;
+	Recipe recipe{.domain = Domain::disk, .count = count, .symmetric = symmetric, .starts = 2};
 	return recipe;
 }
 
 // Quick to make.
 Pattern many(Domain domain)
 {
-	Recipe recipe;
-	recipe.domain = domain;
-	recipe.count = 512;
-	recipe.method = Method::vogel;
+	Recipe recipe{.domain = domain, .count = 512, .method = Method::vogel};
 	return generatePattern(recipe);
-}
-
-std::vector<float> visibilityOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
-{
-	return shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
 }
 
 // Numerical integral of the falloff over the open part of a line.
@@ -174,11 +162,7 @@ TEST_CASE("shade: areas read 1 on an open plane, and come closer to the depth bu
 		}
 	}
 	const GBuffer gbuffer = builtinView("courtyard", 192, 108);
-	ReferenceSettings truth;
-	truth.measure = ReferenceMeasure::hemisphere;
-	truth.source = MatterSource::depth;
-	truth.radius_m = 1.0;
-	truth.rays = 256;
+	ReferenceSettings truth{.measure = ReferenceMeasure::hemisphere, .source = MatterSource::depth, .radius_m = 1.0, .rays = 256};
 	const std::vector<ReferenceValue> reference = referenceOfGBuffer(nullptr, gbuffer, truth, {2, {}});
 	const std::vector<Pattern> five{generatePattern(diskRecipe(5))};
 	settings.radius_m = 1.0;

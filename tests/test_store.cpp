@@ -3,7 +3,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/file.h"
 #include "core/random.h"
 #include "core/work_units.h"

@@ -1,13 +1,67 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "testing.h"
-#include "tile_errors.h"
 
-#include "core/error.h"
+#include "core/random.h"
+#include "pattern/energy.h"
+#include "pattern/pattern.h"
 #include "pattern/recipe.h"
+#include "pattern/tile.h"
 #include "pattern/tile_parts.h"
 
 namespace
 {
+
+Recipe recipeOf(Domain domain, int count)
+{
+	Recipe recipe{.domain = domain, .count = count};
+	return recipe;
+}
+
+double planeErrorOf(const Pattern& p)
+{
+	return std::sqrt(squaredError(p.domain, Ensemble::plane, Part::whole, p.points, p.weights));
+}
+
+// A tile of random, unoptimised points.
+PatternTile scattered(Domain domain, int size, const TileTime& time, std::size_t count)
+{
+	PatternTile tile;
+	tile.domain = domain;
+	tile.size = size;
+	tile.frames = time.frames;
+	tile.moves = time.moves;
+	unsigned index = 1;
+	for (int v = 0; v < size * size * layersOf(tile); ++v)
+	{
+		Pattern variant;
+		variant.domain = domain;
+		for (std::size_t i = 0; i < count; ++i, ++index)
+		{
+			variant.points.emplace_back(radicalInverse(index, 2) - 0.5, radicalInverse(index, 3) - 0.5,
+										domain == Domain::ball ? radicalInverse(index, 5) - 0.5 : 0.0);
+			variant.weights.push_back((1.0 + radicalInverse(index, 7)));
+		}
+		const double sum = std::accumulate(variant.weights.begin(), variant.weights.end(), 0.0);
+		for (double& w : variant.weights)
+		{
+			w /= sum;
+		}
+		tile.variants.push_back(variant);
+	}
+	return tile;
+}
+
+double errorOf(const PatternTile& tile, const TileShares& shares, EnergyGradient* gradient = nullptr)
+{
+	std::vector<glm::dvec3> points;
+	std::vector<double> weights;
+	for (const Pattern& variant : tile.variants)
+	{
+		points.insert(points.end(), variant.points.begin(), variant.points.end());
+		weights.insert(weights.end(), variant.weights.begin(), variant.weights.end());
+	}
+	return tileSquaredError(tile.domain, shares, points, weights, gradient);
+}
 
 // The first samples, with normalised weights.
 Pattern prefixOf(const Pattern& pattern, std::size_t count)
@@ -31,6 +85,79 @@ void checkVariant(const Pattern& variant, std::size_t count)
 	{
 		CHECK(glm::length(p) <= 1.0);
 	}
+}
+
+// Like errorOf, by moments between variants.
+double errorByMoments(const PatternTile& tile, TileMoments& by_moments, EnergyGradient& gradient, int threads = 1)
+{
+	std::vector<glm::dvec3> points;
+	std::vector<double> weights;
+	for (const Pattern& variant : tile.variants)
+	{
+		points.insert(points.end(), variant.points.begin(), variant.points.end());
+		weights.insert(weights.end(), variant.weights.begin(), variant.weights.end());
+	}
+	return by_moments(points, weights, gradient, threads);
+}
+
+// Squared error of the pattern's share in an interval of azimuths, one of jitters, and a box of both, on the torus.
+double squaredErrorByIntervals(const Pattern& p, int count)
+{
+	double sum = 0.0;
+	for (int k = 1; k <= count; ++k)
+	{
+		const auto index = static_cast<unsigned>(k);
+		const double from[2] = {radicalInverse(index, 2), radicalInverse(index, 3)};
+		const double length[2] = {radicalInverse(index, 5), radicalInverse(index, 7)};
+		double error[3] = {length[0], length[1], length[0] * length[1]};
+		for (std::size_t i = 0; i < p.count(); ++i)
+		{
+			const bool in_x = fraction(p.points[i].x - from[0]) < length[0];
+			const bool in_y = fraction(p.points[i].y - from[1]) < length[1];
+			error[0] -= in_x ? p.weights[i] : 0.0;
+			error[1] -= in_y ? p.weights[i] : 0.0;
+			error[2] -= in_x && in_y ? p.weights[i] : 0.0;
+		}
+		sum += (error[0] * error[0] + error[1] * error[1] + error[2] * error[2]) / (3.0 * count);
+	}
+	return sum;
+}
+
+// The mean squared error over all pixels and frames, evaluating each as one weighted pattern.
+double squaredErrorByUnions(const PatternTile& tile, const TileFilter& filter, const TileTime& time, int last, glm::ivec2 pan)
+{
+	const int lags = last > 0 ? last : time.ema == 1.0 ? 1 : 400;
+	double sum = 0.0;
+	int pixels = 0;
+	for (int frame = 0; frame < time.frames; ++frame)
+	{
+		for (int pixel = 0; pixel < tile.size * tile.size; ++pixel, ++pixels)
+		{
+			std::vector<glm::dvec3> points;
+			std::vector<double> weights;
+			double share = last > 0 ? 1.0 / last : time.ema;
+			for (int lag = 0; lag<lags; ++lag, share *= last> 0 ? 1.0 : 1.0 - time.ema)
+			{
+				for (int tap = 0; tap < static_cast<int>(filter.taps.size()); ++tap)
+				{
+					const int x = pixel % tile.size + tap % filter.width - lag * pan.x + 4000 * tile.size;
+					const int y = pixel / tile.size + tap / filter.width - lag * pan.y + 4000 * tile.size;
+					const int variant = variantOfFrame(tile, frame - lag + 400 * tile.frames);
+					const int area = tile.size * tile.size;
+					const int row =
+						variant / area * area + (y + variant / tile.size) % tile.size * tile.size + (x + variant) % tile.size;
+					const Pattern& pattern = tile.variants[static_cast<std::size_t>(row)];
+					points.insert(points.end(), pattern.points.begin(), pattern.points.end());
+					for (const double w : pattern.weights)
+					{
+						weights.push_back(w * share * filter.taps[static_cast<std::size_t>(tap)]);
+					}
+				}
+			}
+			sum += squaredError(tile.domain, Ensemble::plane, Part::whole, points, weights);
+		}
+	}
+	return sum / pixels;
 }
 
 } // namespace
@@ -68,10 +195,7 @@ TEST_CASE("tile: variants keep the symmetry of their base, and all kinds and siz
 	{
 		for (const TileKind kind : {TileKind::points, TileKind::even, TileKind::random})
 		{
-			TileRecipe settings;
-			settings.size = size;
-			settings.kind = kind;
-			settings.starts = kind == TileKind::points ? 1 : 0;
+			TileRecipe settings{.size = size, .kind = kind, .starts = kind == TileKind::points ? 1 : 0};
 			const PatternTile tile = generateTile(base, settings, RunSettings{2, {}});
 			REQUIRE(tile.variants.size() == static_cast<std::size_t>(size * size));
 			for (const Pattern& variant : tile.variants)
@@ -85,8 +209,7 @@ TEST_CASE("tile: variants keep the symmetry of their base, and all kinds and siz
 	for (const Domain domain : {Domain::ball, Domain::hemisphere})
 	{
 		const Pattern other = generatePattern(recipeOf(domain, 6));
-		TileRecipe settings;
-		settings.starts = 1;
+		TileRecipe settings{.starts = 1};
 		CHECK(generateTile(other, settings).variants.size() == 16);
 		settings.starts = 0;
 		settings.kind = TileKind::random;
@@ -124,8 +247,7 @@ TEST_CASE("tile: prefixes of ordered variants err less, and what is whole stays 
 		Recipe recipe = recipeOf(Domain::disk, 9);
 		recipe.symmetric = symmetric;
 		const Pattern base = generatePattern(recipe, RunSettings{2, {}});
-		TileRecipe settings;
-		settings.starts = 1;
+		TileRecipe settings{.starts = 1};
 		const PatternTile plain = generateTile(base, settings);
 		settings.progressive = true;
 		const PatternTile ordered = generateTile(base, settings);
@@ -155,19 +277,14 @@ TEST_CASE("tile: prefixes of ordered variants err less, and what is whole stays 
 		};
 		CHECK(errorOf(prefixes(ordered, 5), window) < 0.75 * errorOf(prefixes(plain, 5), window));
 	}
-	TileRecipe settings;
-	settings.progressive = true;
-	settings.kind = TileKind::even;
+	TileRecipe settings{.kind = TileKind::even, .progressive = true};
 	CHECK_THROWS(generateTile(generatePattern(recipeOf(Domain::disk, 4)), settings));
 }
 
 TEST_CASE("tile: more memory than may be taken is refused before work", "[pattern]")
 {
 	const Pattern base = generatePattern(recipeOf(Domain::disk, 4));
-	TileRecipe recipe;
-	recipe.size = 128;
-	recipe.filters = {tileFilterNamed("binomial:3")};
-	recipe.frames = 32;
+	TileRecipe recipe{.size = 128, .filters = {tileFilterNamed("binomial:3")}, .frames = 32};
 	const uint64_t need = tileMemory(recipe, base, 2);
 	CHECK_NOTHROW(checkTileSize(recipe, base, need, 2));
 	CHECK_NOTHROW(checkTileSize(recipe, base, 0, 2));
@@ -177,24 +294,6 @@ TEST_CASE("tile: more memory than may be taken is refused before work", "[patter
 	recipe.moves = true;
 	CHECK(tileMemory(recipe, base, 2) < need / 8);
 }
-
-namespace
-{
-
-// Like errorOf, by moments between variants.
-double errorByMoments(const PatternTile& tile, TileMoments& by_moments, EnergyGradient& gradient, int threads = 1)
-{
-	std::vector<glm::dvec3> points;
-	std::vector<double> weights;
-	for (const Pattern& variant : tile.variants)
-	{
-		points.insert(points.end(), variant.points.begin(), variant.points.end());
-		weights.insert(weights.end(), variant.weights.begin(), variant.weights.end());
-	}
-	return by_moments(points, weights, gradient, threads);
-}
-
-} // namespace
 
 TEST_CASE("tile moments: nearly the exact error, between frames alike and not alike in time, and of one tile that moves",
 		  "[pattern]")
@@ -275,10 +374,7 @@ TEST_CASE("tile: very many samples are made by moments, about as good and the sa
 	Recipe spiral = recipeOf(Domain::disk, 200);
 	spiral.method = Method::vogel;
 	const Pattern base = generatePattern(spiral, RunSettings{2, {}});
-	TileRecipe recipe;
-	recipe.size = 3;
-	recipe.filters = {tileFilterNamed("binomial:3")};
-	recipe.frames = 4;
+	TileRecipe recipe{.size = 3, .filters = {tileFilterNamed("binomial:3")}, .frames = 4};
 	REQUIRE(stepsOfError(sharesOf(3, recipe.filters[0], {4, 0.1, {}}, 0), 200) > 0x1p24);
 	const PatternTile tile = generateTile(base, recipe, RunSettings{2, {}});
 	REQUIRE(tile.variants.size() == 36);
@@ -288,34 +384,6 @@ TEST_CASE("tile: very many samples are made by moments, about as good and the sa
 	CHECK(std::sqrt(errorOf(tile, sharesOf(3, recipe.filters[0], time))) < 0.38 * planeErrorOf(base));
 	CHECK(generateTile(base, recipe, RunSettings{1, {}}).variants[20].points == tile.variants[20].points);
 }
-
-namespace
-{
-
-// Squared error of the pattern's share in an interval of azimuths, one of jitters, and a box of both, on the torus.
-double squaredErrorByIntervals(const Pattern& p, int count)
-{
-	double sum = 0.0;
-	for (int k = 1; k <= count; ++k)
-	{
-		const auto index = static_cast<unsigned>(k);
-		const double from[2] = {radicalInverse(index, 2), radicalInverse(index, 3)};
-		const double length[2] = {radicalInverse(index, 5), radicalInverse(index, 7)};
-		double error[3] = {length[0], length[1], length[0] * length[1]};
-		for (std::size_t i = 0; i < p.count(); ++i)
-		{
-			const bool in_x = fraction(p.points[i].x - from[0]) < length[0];
-			const bool in_y = fraction(p.points[i].y - from[1]) < length[1];
-			error[0] -= in_x ? p.weights[i] : 0.0;
-			error[1] -= in_y ? p.weights[i] : 0.0;
-			error[2] -= in_x && in_y ? p.weights[i] : 0.0;
-		}
-		sum += (error[0] * error[0] + error[1] * error[1] + error[2] * error[2]) / (3.0 * count);
-	}
-	return sum;
-}
-
-} // namespace
 
 TEST_CASE("tile: the error of slices is that over periodic intervals and boxes, with its gradient", "[pattern]")
 {
@@ -350,8 +418,7 @@ TEST_CASE("tile: slices are better behind a filter than those of the kernel, and
 	const auto [name, share] =
 		GENERATE(table<const char*, double>({{"box:3", 0.8}, {"binomial:3", 0.72}, {"bilateral:5", 1.0}, {"box:4", 1.0}}));
 	INFO(name);
-	TileRecipe recipe;
-	recipe.filters = {tileFilterNamed(name)};
+	TileRecipe recipe{.filters = {tileFilterNamed(name)}};
 	const TileShares shares = sharesOf(4, recipe.filters[0]);
 	const PatternTile tile = generateTile(slicePattern(1), recipe, RunSettings{2, {}});
 	CHECK(std::sqrt(errorOf(tile, shares)) <= share * std::sqrt(errorOf(kernels, shares)));
@@ -385,8 +452,7 @@ TEST_CASE("tile: larger tiles are no worse than copies of smaller ones, and ever
 			double least = std::numeric_limits<double>::infinity();
 			for (const int size : {2, 4, 8})
 			{
-				TileRecipe recipe;
-				recipe.size = size;
+				TileRecipe recipe{.size = size};
 				if (*filter != '\0')
 				{
 					recipe.filters = {tileFilterNamed(filter)};
@@ -407,11 +473,7 @@ TEST_CASE("tile: larger tiles are no worse than copies of smaller ones, and ever
 TEST_CASE("tile: copies of a smaller tile where frames move it, and transforms that make the variants", "[pattern]")
 {
 	const RunSettings run{2, {}};
-	TileRecipe recipe;
-	recipe.size = 6;
-	recipe.filters = {tileFilterNamed("box:2")};
-	recipe.frames = 4;
-	recipe.moves = true;
+	TileRecipe recipe{.size = 6, .filters = {tileFilterNamed("box:2")}, .frames = 4, .moves = true};
 	const PatternTile moved = generateTile(slicePattern(1), recipe, run);
 	CHECK((moved.variants.size() == 36 && moved.moves.size() == 4));
 	recipe = {};
@@ -429,48 +491,6 @@ TEST_CASE("tile: copies of a smaller tile where frames move it, and transforms t
 }
 
 // Errors behind a filter and over frames, and the tiles optimised for them.
-
-namespace
-{
-
-// The mean squared error over all pixels and frames, evaluating each as one weighted pattern.
-double squaredErrorByUnions(const PatternTile& tile, const TileFilter& filter, const TileTime& time, int last, glm::ivec2 pan)
-{
-	const int lags = last > 0 ? last : time.ema == 1.0 ? 1 : 400;
-	double sum = 0.0;
-	int pixels = 0;
-	for (int frame = 0; frame < time.frames; ++frame)
-	{
-		for (int pixel = 0; pixel < tile.size * tile.size; ++pixel, ++pixels)
-		{
-			std::vector<glm::dvec3> points;
-			std::vector<double> weights;
-			double share = last > 0 ? 1.0 / last : time.ema;
-			for (int lag = 0; lag<lags; ++lag, share *= last> 0 ? 1.0 : 1.0 - time.ema)
-			{
-				for (int tap = 0; tap < static_cast<int>(filter.taps.size()); ++tap)
-				{
-					const int x = pixel % tile.size + tap % filter.width - lag * pan.x + 4000 * tile.size;
-					const int y = pixel / tile.size + tap / filter.width - lag * pan.y + 4000 * tile.size;
-					const int variant = variantOfFrame(tile, frame - lag + 400 * tile.frames);
-					const int area = tile.size * tile.size;
-					const int row =
-						variant / area * area + (y + variant / tile.size) % tile.size * tile.size + (x + variant) % tile.size;
-					const Pattern& pattern = tile.variants[static_cast<std::size_t>(row)];
-					points.insert(points.end(), pattern.points.begin(), pattern.points.end());
-					for (const double w : pattern.weights)
-					{
-						weights.push_back(w * share * filter.taps[static_cast<std::size_t>(tap)]);
-					}
-				}
-			}
-			sum += squaredError(tile.domain, Ensemble::plane, Part::whole, points, weights);
-		}
-	}
-	return sum / pixels;
-}
-
-} // namespace
 
 TEST_CASE("tile: the error behind a filter is that of the pattern seen at each pixel", "[pattern]")
 {
@@ -582,9 +602,7 @@ TEST_CASE("tile: over frames points and directions gain as lines do", "[pattern]
 	for (const Domain domain : {Domain::ball, Domain::hemisphere})
 	{
 		const Pattern base = generatePattern(recipeOf(domain, 5), RunSettings{2, {}});
-		TileRecipe recipe;
-		recipe.filters = {tileFilterNamed("box:4")};
-		recipe.frames = 16;
+		TileRecipe recipe{.filters = {tileFilterNamed("box:4")}, .frames = 16};
 		const PatternTile tile = generateTile(base, recipe, RunSettings{2, {}});
 		const TileTime time{16, 0.1, {}};
 		const double one = std::sqrt(errorOf(tile, sharesOf(4, recipe.filters[0], time)));

@@ -18,6 +18,11 @@ namespace
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
+double distanceTo(const Bounds& box, glm::dvec3 point)
+{
+	return glm::length(point - glm::clamp(point, box.least, box.most));
+}
+
 } // namespace
 
 TEST_CASE("tracer: hits lie on their triangle, at their distance", "[reference]")
@@ -153,16 +158,6 @@ TEST_CASE("tracer: rays along edges meet what every triangle in double says", "[
 
 // A tree restricted to the reach of the rays compared with one of the whole level.
 
-namespace
-{
-
-double distanceTo(const Bounds& box, glm::dvec3 point)
-{
-	return glm::length(point - glm::clamp(point, box.least, box.most));
-}
-
-} // namespace
-
 TEST_CASE("vicinity: no box within reach of a point is left out, most of the others are", "[reference]")
 {
 	Random random(3);
@@ -221,10 +216,7 @@ TEST_CASE("vicinity: the same visibility by a tree of what is near", "[reference
 		{
 			for (const Falloff falloff : {Falloff::hard, Falloff::linear})
 			{
-				ReferenceSettings settings;
-				settings.radius_m = radius_m;
-				settings.falloff = falloff;
-				settings.rays = 64;
+				ReferenceSettings settings{.falloff = falloff, .radius_m = radius_m, .rays = 64};
 				const std::optional<Vicinity> reach = reachOf(level, gbuffer, settings);
 				REQUIRE(reach);
 				std::size_t kept = 0;
@@ -243,8 +235,7 @@ TEST_CASE("vicinity: the same visibility by a tree of what is near", "[reference
 				}
 			}
 		}
-		ReferenceSettings settings;
-		settings.measure = ReferenceMeasure::hemisphere;
+		ReferenceSettings settings{.measure = ReferenceMeasure::hemisphere};
 		CHECK(!reachOf(level, gbuffer, settings));
 	}
 }

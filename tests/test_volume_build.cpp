@@ -5,7 +5,6 @@
 #include "small_volumes.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/math.h"
 #include "core/random.h"
 #include "scene/builtin.h"
@@ -43,6 +42,132 @@ CompensateSettings fitOf(int views, int per_view, int by_area, int rays)
 	settings.by_area = by_area;
 	settings.rays = rays;
 	return settings;
+}
+
+VolumeSet squareOf(float reach, float side_reach, bool two_sided)
+{
+	VolumeSet set;
+	set.distance_m = 2.0;
+	set.occluders.corners = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
+	set.occluders.polygons.push_back({0, 4, 0, 1.0F, two_sided});
+	set.occluders.polygons[0].reach = reach;
+	set.occluders.polygons[0].side_reach = side_reach;
+	return set;
+}
+
+using Corners = std::vector<glm::dvec3>;
+
+// Convex, in a random plane: corners on an ellipse at random angles.
+Corners randomPolygon(nook::Random& random, std::size_t count, double width, double height, glm::dvec3 centre)
+{
+	glm::dvec3 normal(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+	normal = glm::normalize(normal);
+	const glm::dvec3 side =
+		glm::normalize(glm::cross(normal, std::fabs(normal.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+	const glm::dvec3 up = glm::cross(normal, side);
+	std::vector<double> angles;
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		angles.push_back(2.0 * nook::kPi * (static_cast<double>(i) + 0.9 * random.uniform()) / static_cast<double>(count));
+	}
+	Corners corners;
+	for (const double angle : angles)
+	{
+		const nook::SinCos at = nook::sinCosOf(angle);
+		corners.push_back(centre + side * (width * at.cos) + up * (height * at.sin));
+	}
+	return corners;
+}
+
+// AOV eq. 5 without ᾱ, and for two-sided polygons by |height|: a straightforward reference.
+double falloff(const Corners& corners, const nook::VolumeShape& shape, glm::dvec3 x)
+{
+	const glm::dvec3 front = nook::frontOf(corners);
+	double g = 1.0;
+	for (std::size_t i = 0; i < corners.size(); ++i)
+	{
+		const glm::dvec3 inward = glm::normalize(glm::cross(front, corners[(i + 1) % corners.size()] - corners[i]));
+		const double side = glm::dot(x - corners[i], inward);
+		g *= side <= -shape.distance_m * shape.side_share ? 0.0 : std::clamp(side / shape.distance_m + 1.0, 0.0, 1.0);
+	}
+	const double height = glm::dot(x - corners[0], front);
+	if (height < 0.0 && !shape.two_sided)
+	{
+		return 0.0;
+	}
+	return g * std::clamp(1.0 - std::fabs(height) / shape.distance_m, 0.0, 1.0);
+}
+
+struct Face
+{
+	std::vector<std::size_t> at;
+};
+
+std::vector<Face> facesOf(std::size_t count)
+{
+	Face low;
+	Face high;
+	std::vector<Face> faces;
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		const std::size_t next = (i + 1) % count;
+		low.at.insert(low.at.begin(), i);
+		high.at.push_back(count + i);
+		faces.push_back({{i, next, count + next, count + i}});
+	}
+	faces.push_back(low);
+	faces.push_back(high);
+	return faces;
+}
+
+// The greatest height of a point above a face, metres: ≤ 0 inside.
+double outsideOf(const std::vector<glm::dvec3>& points, glm::dvec3 x)
+{
+	double most = -1e300;
+	for (const Face& face : facesOf(points.size() / 2))
+	{
+		Corners corners;
+		for (const std::size_t at : face.at)
+		{
+			corners.push_back(points[at]);
+		}
+		most = std::max(most, glm::dot(x - corners[0], nook::frontOf(corners)));
+	}
+	return most;
+}
+
+std::vector<glm::dvec3> prism(const Corners& corners, const nook::VolumeShape& shape)
+{
+	std::vector<glm::dvec3> points(2 * corners.size());
+	nook::prismOf(corners, nook::frontOf(corners), shape, points);
+	return points;
+}
+
+void requireSound(const Corners& corners, const std::vector<glm::dvec3>& points, double scale)
+{
+	double volume = 0.0;
+	for (const Face& face : facesOf(corners.size()))
+	{
+		Corners ring;
+		for (const std::size_t at : face.at)
+		{
+			ring.push_back(points[at] - corners[0]);
+		}
+		REQUIRE(glm::length(nook::frontOf(ring)) > 0.5); // not degenerate
+		for (std::size_t i = 1; i + 1 < ring.size(); ++i)
+		{
+			volume += glm::dot(ring[0], glm::cross(ring[i], ring[i + 1])) / 6.0;
+		}
+	}
+	REQUIRE(volume > 0.0);
+	for (const glm::dvec3 point : points) // convex with outward faces: no corner is above any face
+	{
+		REQUIRE(outsideOf(points, point) <= 1e-9 * scale);
+	}
+	for (const glm::dvec3 corner : corners)
+	{
+		REQUIRE(outsideOf(points, corner) <= 1e-9 * scale);
+	}
 }
 
 } // namespace
@@ -357,22 +482,6 @@ TEST_CASE("compensation: where no ray meets anything the paper's ratio counts", 
 
 // Shortened volumes: the cut itself, the allowed losses, and the file's round trip.
 
-namespace
-{
-
-VolumeSet squareOf(float reach, float side_reach, bool two_sided)
-{
-	VolumeSet set;
-	set.distance_m = 2.0;
-	set.occluders.corners = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
-	set.occluders.polygons.push_back({0, 4, 0, 1.0F, two_sided});
-	set.occluders.polygons[0].reach = reach;
-	set.occluders.polygons[0].side_reach = side_reach;
-	return set;
-}
-
-} // namespace
-
 TEST_CASE("trim: a receiver beyond the reach gets nothing, one within gets what it got", "[trim]")
 {
 	Random random(3);
@@ -464,8 +573,7 @@ TEST_CASE("trim: no receiver loses more than it may, fragments are saved, thread
 {
 	const Level level = builtinLevel("suburb");
 	const Tracer tracer(level, {});
-	TrimSettings settings;
-	settings.share = 0.1;
+	TrimSettings settings{.share = 0.1};
 	const std::vector<ReferencePoint> receivers = sampleReceivers(tracer, 1.5, {2, 2000, 6000, 0, 1}, {2, {}});
 	const VolumeSet whole = volumesOf(level, 1.5, 64);
 	VolumeSet cut = whole;
@@ -523,8 +631,7 @@ TEST_CASE("trim: what few receivers see keeps its reach; a cap leaves receivers 
 	VolumeSet set = squares();
 	const std::vector<ReferencePoint> three(3, ReferencePoint{{0.5, 0.5, 1.9}, {0.0, 0.0, -1.0}, 0.0});
 	const std::vector<ReferencePoint> four(4, three[0]);
-	TrimSettings settings;
-	settings.share = 1.0;
+	TrimSettings settings{.share = 1.0};
 	CHECK(trimVolumes(set, three, settings, {}).trimmed == 0);
 	CHECK((set.occluders.polygons[0].reach == 1.0F && set.occluders.polygons[1].reach == 1.0F));
 	CHECK(trimVolumes(set, four, settings, {}).trimmed == 1);
@@ -546,8 +653,7 @@ TEST_CASE("trim: volumes that no receiver was asked about are asked about what t
 	const Level level = builtinLevel("cornell");
 	const Tracer tracer(level, {});
 	VolumeSet set = volumesOf(level, 0.4, 8);
-	TrimSettings settings;
-	settings.share = 0.5;
+	TrimSettings settings{.share = 0.5};
 	CHECK(trimVolumes(set, std::span<const ReferencePoint>(), settings, {}).receivers == 0);
 	const TrimCounts counts = trimVolumes(set, std::span<const ReferencePoint>(), settings, {}, &tracer);
 	CHECK(counts.receivers > 100);
@@ -578,126 +684,6 @@ TEST_CASE("trim: eight bytes keep what a receiver gets, none less, and the reach
 }
 
 // The closed volume around a polygon: outward, convex, and covering all points with a falloff above 0 in AOV eq. 5.
-
-namespace
-{
-
-using Corners = std::vector<glm::dvec3>;
-
-// Convex, in a random plane: corners on an ellipse at random angles.
-Corners randomPolygon(nook::Random& random, std::size_t count, double width, double height, glm::dvec3 centre)
-{
-	glm::dvec3 normal(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
-	normal = glm::normalize(normal);
-	const glm::dvec3 side =
-		glm::normalize(glm::cross(normal, std::fabs(normal.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
-	const glm::dvec3 up = glm::cross(normal, side);
-	std::vector<double> angles;
-	for (std::size_t i = 0; i < count; ++i)
-	{
-		angles.push_back(2.0 * nook::kPi * (static_cast<double>(i) + 0.9 * random.uniform()) / static_cast<double>(count));
-	}
-	Corners corners;
-	for (const double angle : angles)
-	{
-		const nook::SinCos at = nook::sinCosOf(angle);
-		corners.push_back(centre + side * (width * at.cos) + up * (height * at.sin));
-	}
-	return corners;
-}
-
-// AOV eq. 5 without ᾱ, and for two-sided polygons by |height|: a straightforward reference.
-double falloff(const Corners& corners, const nook::VolumeShape& shape, glm::dvec3 x)
-{
-	const glm::dvec3 front = nook::frontOf(corners);
-	double g = 1.0;
-	for (std::size_t i = 0; i < corners.size(); ++i)
-	{
-		const glm::dvec3 inward = glm::normalize(glm::cross(front, corners[(i + 1) % corners.size()] - corners[i]));
-		const double side = glm::dot(x - corners[i], inward);
-		g *= side <= -shape.distance_m * shape.side_share ? 0.0 : std::clamp(side / shape.distance_m + 1.0, 0.0, 1.0);
-	}
-	const double height = glm::dot(x - corners[0], front);
-	if (height < 0.0 && !shape.two_sided)
-	{
-		return 0.0;
-	}
-	return g * std::clamp(1.0 - std::fabs(height) / shape.distance_m, 0.0, 1.0);
-}
-
-struct Face
-{
-	std::vector<std::size_t> at;
-};
-
-std::vector<Face> facesOf(std::size_t count)
-{
-	Face low;
-	Face high;
-	std::vector<Face> faces;
-	for (std::size_t i = 0; i < count; ++i)
-	{
-		const std::size_t next = (i + 1) % count;
-		low.at.insert(low.at.begin(), i);
-		high.at.push_back(count + i);
-		faces.push_back({{i, next, count + next, count + i}});
-	}
-	faces.push_back(low);
-	faces.push_back(high);
-	return faces;
-}
-
-// The greatest height of a point above a face, metres: ≤ 0 inside.
-double outsideOf(const std::vector<glm::dvec3>& points, glm::dvec3 x)
-{
-	double most = -1e300;
-	for (const Face& face : facesOf(points.size() / 2))
-	{
-		Corners corners;
-		for (const std::size_t at : face.at)
-		{
-			corners.push_back(points[at]);
-		}
-		most = std::max(most, glm::dot(x - corners[0], nook::frontOf(corners)));
-	}
-	return most;
-}
-
-std::vector<glm::dvec3> prism(const Corners& corners, const nook::VolumeShape& shape)
-{
-	std::vector<glm::dvec3> points(2 * corners.size());
-	nook::prismOf(corners, nook::frontOf(corners), shape, points);
-	return points;
-}
-
-void requireSound(const Corners& corners, const std::vector<glm::dvec3>& points, double scale)
-{
-	double volume = 0.0;
-	for (const Face& face : facesOf(corners.size()))
-	{
-		Corners ring;
-		for (const std::size_t at : face.at)
-		{
-			ring.push_back(points[at] - corners[0]);
-		}
-		REQUIRE(glm::length(nook::frontOf(ring)) > 0.5); // not degenerate
-		for (std::size_t i = 1; i + 1 < ring.size(); ++i)
-		{
-			volume += glm::dot(ring[0], glm::cross(ring[i], ring[i + 1])) / 6.0;
-		}
-	}
-	REQUIRE(volume > 0.0);
-	for (const glm::dvec3 point : points) // convex with outward faces: no corner is above any face
-	{
-		REQUIRE(outsideOf(points, point) <= 1e-9 * scale);
-	}
-	for (const glm::dvec3 corner : corners)
-	{
-		REQUIRE(outsideOf(points, corner) <= 1e-9 * scale);
-	}
-}
-
-} // namespace
 
 TEST_CASE("volume: a square's prism is the square moved outward by the distance", "[volume][prism]")
 {

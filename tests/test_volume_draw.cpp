@@ -149,6 +149,34 @@ Facing facingOf(const PackedVolumes& packed, const nook_volumes::Camera& camera,
 	return facing;
 }
 
+// Sums with occlusions given by `of`, and neighbours whose sums differ slightly.
+template <class Of> std::vector<TripleValues> triplesOf(Of&& of)
+{
+	Random random(1, 5);
+	std::vector<TripleValues> triples(2000);
+	for (TripleValues& triple : triples)
+	{
+		triple.there = {true, random.uniform() < 0.9, random.uniform() < 0.9};
+		triple.sums[0] = random.uniform();
+		for (std::size_t i = 0; i < 3; ++i)
+		{
+			triple.sums[i] = i == 0 ? triple.sums[0] : std::clamp(triple.sums[0] + 0.05 * (random.uniform() - 0.5), 0.0, 1.0);
+			triple.occlusions[i] = of(triple.sums[i], random);
+		}
+	}
+	return triples;
+}
+
+Compensation straight()
+{
+	Compensation curve;
+	for (std::size_t i = 0; i < curve.occlusion.size(); ++i)
+	{
+		curve.occlusion[i] = static_cast<double>(i) / 32.0;
+	}
+	return curve;
+}
+
 } // namespace
 
 TEST_CASE("volumes' frame: front faces run as it says, for OpenGL and for Vulkan, mirrored views too", "[volume_draw]")
@@ -352,39 +380,6 @@ TEST_CASE("volumes: a reader without a file is empty, not a crash", "[volume_dra
 
 // Curves fitted to AOV eq. 14, including gradients.
 
-namespace
-{
-
-// Sums with occlusions given by `of`, and neighbours whose sums differ slightly.
-template <class Of> std::vector<TripleValues> triplesOf(Of&& of)
-{
-	Random random(1, 5);
-	std::vector<TripleValues> triples(2000);
-	for (TripleValues& triple : triples)
-	{
-		triple.there = {true, random.uniform() < 0.9, random.uniform() < 0.9};
-		triple.sums[0] = random.uniform();
-		for (std::size_t i = 0; i < 3; ++i)
-		{
-			triple.sums[i] = i == 0 ? triple.sums[0] : std::clamp(triple.sums[0] + 0.05 * (random.uniform() - 0.5), 0.0, 1.0);
-			triple.occlusions[i] = of(triple.sums[i], random);
-		}
-	}
-	return triples;
-}
-
-Compensation straight()
-{
-	Compensation curve;
-	for (std::size_t i = 0; i < curve.occlusion.size(); ++i)
-	{
-		curve.occlusion[i] = static_cast<double>(i) / 32.0;
-	}
-	return curve;
-}
-
-} // namespace
-
 TEST_CASE("compensation: eq. 14 of triples is 0 for the curve that they are made with, and is found from another", "[compensate]")
 {
 	const Compensation paper;
@@ -443,10 +438,7 @@ TEST_CASE("compensation: a curve that is worse in views kept out is refused", "[
 	set.distance_m = 1.0;
 	set.exact_bounds = true;
 	set.occluders = occludersOf(level, {}, {}).occluders;
-	CompensateSettings settings;
-	settings.rays = 64;
-	settings.kept_out = {2, 2, 200};
-	settings.pictures = {2, 0, 200};
+	CompensateSettings settings{.rays = 64, .pictures = {2, 0, 200}, .kept_out = {2, 2, 200}};
 	for (const CurveMeasure measure : {CurveMeasure::eq14, CurveMeasure::rmse})
 	{
 		settings.measure = measure;
@@ -473,9 +465,7 @@ TEST_CASE("compensation: the points of pictures are a pixel apart, and on surfac
 {
 	const Level level = builtinLevel("cornell");
 	const Tracer tracer(level, {});
-	PictureSettings settings;
-	settings.views = 2;
-	settings.per_view = 100;
+	PictureSettings settings{.views = 2, .per_view = 100};
 	const std::vector<PictureTriple> triples = pictureTriples(tracer, settings, {});
 	REQUIRE(triples.size() > 100);
 	std::size_t near_by = 0;

@@ -4,12 +4,10 @@
 #include "small_levels.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/random.h"
 #include "scene/builtin.h"
 #include "volume/build.h"
 #include "volume/evaluate.h"
-#include "volume/occluders.h"
 #include "volume/receivers.h"
 #include "volume/region.h"
 #include "volume/volumes.h"

@@ -319,11 +319,7 @@ TEST_CASE("form factor: a share and no NaN where the receiver touches the polygo
 	const std::array<glm::vec3, 6> places{glm::vec3(0), {1, 1, 0}, {1, 0, 0}, {0.3F, 0.2F, 0}, {1, 1, 1e-30F}, {1, 0, 1e-12F}};
 	for (const glm::vec3& place : places)
 	{
-		std::vector<glm::vec3> corners;
-		for (const glm::vec3& corner : square)
-		{
-			corners.push_back(corner - place);
-		}
+		const std::vector<glm::vec3> corners = mapped(square, [&](const glm::vec3& corner) { return corner - place; });
 		for (uint32_t i = 0; i < 200; ++i)
 		{
 			Random random(10, i);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Polygons made from triangles: equal area, convex, and independent of the tessellation.
 #include "level_files.h"
+#include "testing.h"
 
 #include "core/math.h"
 #include "core/random.h"
@@ -10,22 +11,8 @@
 #include "volume/surface.h"
 #include "volume/volumes.h"
 
-#include <catch2/catch.hpp>
-
-#include <glm/geometric.hpp>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <string>
-#include <vector>
-
 namespace
 {
-
-using nook::Level;
-using nook::Occluding;
 
 const nook::RunSettings kRun{2, {}};
 
@@ -131,11 +118,8 @@ glm::dvec3 doubleAreaOf(std::span<const glm::dvec3> corners)
 
 double areaOf(const nook::Occluders& occluders)
 {
-	double sum = 0.0;
-	for (const nook::Occluder& polygon : occluders.polygons)
-	{
-		sum += 0.5 * glm::length(doubleAreaOf(cornersOf(occluders, polygon)));
-	}
+	const double sum = sumOver(occluders.polygons, [&](const nook::Occluder& polygon)
+							   { return 0.5 * glm::length(doubleAreaOf(cornersOf(occluders, polygon))); });
 	return sum;
 }
 
@@ -193,6 +177,47 @@ glm::dvec3 tilted(double u, double v)
 	const glm::dvec3 exact =
 		glm::dvec3(3.0, 1.0, -20.0) + 8.0 * u * glm::dvec3(0.36, 0.48, 0.8) + 4.0 * v * glm::dvec3(-0.8, 0.6, 0.0);
 	return glm::dvec3(glm::vec3(exact));
+}
+
+// A ball of 16 × 16 × 6 × 2 triangles on a grid of 2⁻²⁰, so that midpoints of edges are exact. `slits` of them, at edges inside it,
+// have a third vertex on an edge with a degenerate triangle between them and their neighbour: the result of cleaning up a scan.
+Level ballWith(int slits)
+{
+	Maker ball;
+	for (int face = 0; face < 6; ++face)
+	{
+		const double sign = face < 3 ? 1.0 : -1.0;
+		const auto at = [&](int u, int v)
+		{
+			glm::dvec3 p(0.0);
+			p[face % 3] = sign;
+			p[(face + 1) % 3] = u / 8.0 - 1.0;
+			p[(face + 2) % 3] = sign * (v / 8.0 - 1.0);
+			p *= 0x1p20 / glm::length(p);
+			return ball.vertex(glm::dvec3(std::round(p.x), std::round(p.y), std::round(p.z)) * 0x1p-20);
+		};
+		for (int i = 0; i < 256; ++i)
+		{
+			const uint32_t a = at(i % 16, i / 16);
+			const uint32_t b = at(i % 16 + 1, i / 16);
+			const uint32_t c = at(i % 16 + 1, i / 16 + 1);
+			const uint32_t d = at(i % 16, i / 16 + 1);
+			ball.triangle(a, b, c);
+			if (slits > 0 && i % 3 == 0)
+			{
+				slits -= 1;
+				const uint32_t middle = ball.vertex(0.5 * (ball.level.positions[a] + ball.level.positions[c]));
+				ball.triangle(a, middle, d);
+				ball.triangle(middle, c, d);
+				ball.triangle(a, c, middle); // without area
+			}
+			else
+			{
+				ball.triangle(a, c, d);
+			}
+		}
+	}
+	return ball.level;
 }
 
 } // namespace
@@ -294,8 +319,7 @@ TEST_CASE("volume: duplicates go, and a triangle with its back becomes one polyg
 	maker.level.meshes = {{"made", 0, 3}};
 	for (const nook::Sides sides : {nook::Sides::automatic, nook::Sides::oriented})
 	{
-		nook::OccluderSettings settings;
-		settings.sides = sides;
+		nook::OccluderSettings settings{.sides = sides};
 		const Occluding merged = occluders(maker.level, settings);
 		REQUIRE(merged.counts.polygons == 1);
 		REQUIRE(merged.counts.duplicates == 1);
@@ -308,8 +332,7 @@ TEST_CASE("volume: closed surfaces are oriented; sheets, rooms and masks have tw
 {
 	const auto twoSided = [](const Level& level, nook::Sides sides = nook::Sides::automatic)
 	{
-		nook::OccluderSettings settings;
-		settings.sides = sides;
+		nook::OccluderSettings settings{.sides = sides};
 		return occluders(level, settings).counts.two_sided;
 	};
 	Maker box;
@@ -363,52 +386,6 @@ TEST_CASE("volume: closed surfaces are oriented; sheets, rooms and masks have tw
 	glass.level.material_list[0].alpha_mode = nook::AlphaMode::mask;
 	REQUIRE(twoSided(glass.level) == 6);
 }
-
-namespace
-{
-
-// A ball of 16 × 16 × 6 × 2 triangles on a grid of 2⁻²⁰, so that midpoints of edges are exact. `slits` of them, at edges inside it,
-// have a third vertex on an edge with a degenerate triangle between them and their neighbour: the result of cleaning up a scan.
-Level ballWith(int slits)
-{
-	Maker ball;
-	for (int face = 0; face < 6; ++face)
-	{
-		const double sign = face < 3 ? 1.0 : -1.0;
-		const auto at = [&](int u, int v)
-		{
-			glm::dvec3 p(0.0);
-			p[face % 3] = sign;
-			p[(face + 1) % 3] = u / 8.0 - 1.0;
-			p[(face + 2) % 3] = sign * (v / 8.0 - 1.0);
-			p *= 0x1p20 / glm::length(p);
-			return ball.vertex(glm::dvec3(std::round(p.x), std::round(p.y), std::round(p.z)) * 0x1p-20);
-		};
-		for (int i = 0; i < 256; ++i)
-		{
-			const uint32_t a = at(i % 16, i / 16);
-			const uint32_t b = at(i % 16 + 1, i / 16);
-			const uint32_t c = at(i % 16 + 1, i / 16 + 1);
-			const uint32_t d = at(i % 16, i / 16 + 1);
-			ball.triangle(a, b, c);
-			if (slits > 0 && i % 3 == 0)
-			{
-				slits -= 1;
-				const uint32_t middle = ball.vertex(0.5 * (ball.level.positions[a] + ball.level.positions[c]));
-				ball.triangle(a, middle, d);
-				ball.triangle(middle, c, d);
-				ball.triangle(a, c, middle); // without area
-			}
-			else
-			{
-				ball.triangle(a, c, d);
-			}
-		}
-	}
-	return ball.level;
-}
-
-} // namespace
 
 TEST_CASE("volume: triangles without area change nothing about a closed scan's sides, there or dropped", "[volume][occluders]")
 {
@@ -486,8 +463,7 @@ TEST_CASE("volume: what is not in one plane is not merged", "[volume][occluders]
 		Maker maker;
 		maker.grid(
 			2, [&](double u, double v) { return glm::dvec3(u, v, u == 0.5 ? bend_m : 0.0); }, everywhere);
-		nook::OccluderSettings settings;
-		settings.sides = nook::Sides::oriented;
+		nook::OccluderSettings settings{.sides = nook::Sides::oriented};
 		REQUIRE(occluders(maker.level, settings).counts.polygons == (bend_m < 1e-4 ? 1U : 2U));
 	}
 	Maker maker; // a fine sphere: neighbours are nearly coplanar, distant ones are not
@@ -500,8 +476,7 @@ TEST_CASE("volume: what is not in one plane is not merged", "[volume][occluders]
 			return glm::dvec3(around.cos * up.cos, up.sin, around.sin * up.cos);
 		},
 		everywhere);
-	nook::OccluderSettings settings;
-	settings.distance_m = 10.0;
+	nook::OccluderSettings settings{.distance_m = 10.0};
 	const Occluding merged = occluders(maker.level, settings);
 	requireSound(merged.occluders, 1e-3);
 	REQUIRE(merged.counts.polygons > 100);
@@ -535,8 +510,7 @@ TEST_CASE("volume: a masked polygon's alpha is that of its own part of the textu
 	const Occluding whole = occluders(maker.level);
 	REQUIRE(whole.counts.polygons == 1); // one texture mapping: merged
 	REQUIRE(whole.occluders.polygons[0].alpha == Approx(0.75).margin(0.005));
-	nook::OccluderSettings gaps;
-	gaps.gap_halvings = 4;
+	nook::OccluderSettings gaps{.gap_halvings = 4};
 	const Occluding merged = occluders(maker.level, gaps);
 	REQUIRE(merged.counts.uncut == merged.counts.polygons);
 	double solid = 0.0;
@@ -554,8 +528,7 @@ TEST_CASE("volume: a masked polygon's alpha is that of its own part of the textu
 	REQUIRE(net.counts.polygons == 1);
 	REQUIRE(net.occluders.polygons[0].alpha == Approx(0.5).margin(0.02));
 	maker.level.masks[0] = mask;
-	nook::OccluderSettings single;
-	single.merge = false;
+	nook::OccluderSettings single{.merge = false};
 	const Occluding cut = occluders(maker.level, single); // the column from 0 to 1/4 is gone, except for the line with mixed alpha
 	REQUIRE(cut.counts.polygons + cut.counts.clear == 32);
 	REQUIRE(cut.counts.clear + static_cast<uint64_t>(std::count_if(cut.occluders.polygons.begin(), cut.occluders.polygons.end(),
@@ -624,8 +597,7 @@ TEST_CASE("volume: built-in levels keep their area, on any number of threads", "
 		const Occluding cut = nook::occludersOf(level, {}, kRun);
 		requireSound(cut.occluders, 1e-4);
 		REQUIRE(areaOf(cut.occluders) == Approx(areaOf(level)).epsilon(1e-6));
-		nook::OccluderSettings settings;
-		settings.extent = 0.0;
+		nook::OccluderSettings settings{.extent = 0.0};
 		const Occluding alone = nook::occludersOf(level, settings, {1, {}});
 		REQUIRE(alone.occluders.corners == merged.occluders.corners);
 		REQUIRE(std::equal(alone.occluders.polygons.begin(), alone.occluders.polygons.end(), merged.occluders.polygons.begin(),
@@ -638,8 +610,7 @@ TEST_CASE("volume: built-in levels keep their area, on any number of threads", "
 TEST_CASE("volume: without merging there is one polygon a triangle", "[volume][occluders]")
 {
 	const Level level = nook::builtinLevel("cornell");
-	nook::OccluderSettings settings;
-	settings.merge = false;
+	nook::OccluderSettings settings{.merge = false};
 	const Occluding single = occluders(level, settings);
 	REQUIRE(single.counts.polygons == level.triangles.size());
 	for (std::size_t i = 0; i < level.triangles.size(); ++i)

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volumes in clusters and with 16-bit corners: no losses beyond the stated ones.
-#include "random_volumes.h"
 #include "small_levels.h"
 #include "small_volumes.h"
 #include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/error.h"
 #include "core/file.h"
-#include "core/lists.h"
 #include "core/random.h"
 #include "core/text.h"
 #include "scene/load.h"
@@ -21,9 +18,132 @@
 namespace
 {
 
+using Corners = std::vector<glm::dvec3>;
+
+Corners cornersOf(const VolumeSet& volumes, std::size_t polygon)
+{
+	const Occluder& occluder = volumes.occluders.polygons[polygon];
+	const auto first = volumes.occluders.corners.begin() + occluder.first_corner;
+	return {first, first + occluder.corner_count};
+}
+
+void addPolygon(VolumeSet& volumes, const Corners& corners, float alpha = 1.0F, bool two_sided = false)
+{
+	volumes.occluders.polygons.push_back(
+		{static_cast<uint32_t>(volumes.occluders.corners.size()), static_cast<uint32_t>(corners.size()), 0, alpha, two_sided});
+	volumes.occluders.corners.insert(volumes.occluders.corners.end(), corners.begin(), corners.end());
+}
+
+// Polygons of 3 to 8 corners on circles and ellipses anywhere in a box, from millimetres to tens of metres in size.
+VolumeSet randomVolumes(std::size_t count, glm::dvec3 middle = {})
+{
+	Random random(7);
+	const auto number = [&random](double least, double most)
+	{
+		return least + (most - least) * random.below(1U << 20U) / (1U << 20U);
+	};
+	VolumeSet volumes;
+	volumes.distance_m = 0.75;
+	volumes.ray_distance_m = 1.25;
+	while (volumes.occluders.polygons.size() < count)
+	{
+		const glm::dvec3 at = middle + glm::dvec3{number(-40.0, 40.0), number(0.0, 9.0), number(-40.0, 40.0)};
+		const glm::dvec3 u{number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)};
+		const glm::dvec3 v = glm::cross(u, glm::dvec3{number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)});
+		const double size = std::exp2(number(-8.0, 4.0));
+		const auto corners = 3 + random.below(6);
+		const double turn = number(0.0, 6.0);
+		Corners made;
+		for (uint32_t i = 0; i < corners; ++i)
+		{
+			const double angle = turn + 6.283185307179586 * i / corners;
+			made.push_back(at + size * (std::cos(angle) * u + std::sin(angle) * v));
+		}
+		addPolygon(volumes, made, static_cast<float>(number(0.01, 1.0)), random.below(2) == 1);
+	}
+	return volumes;
+}
+
+VolumeSet clustered(VolumeSet volumes, std::size_t polygons = 128, int threads = 1)
+{
+	RunSettings run;
+	run.threads = threads;
+	clusterVolumes(volumes, {polygons}, run);
+	return volumes;
+}
+
+bool sameVolumes(const VolumeSet& a, const VolumeSet& b)
+{
+	const auto same = [](const Occluder& x, const Occluder& y)
+	{
+		return x.first_corner == y.first_corner && x.corner_count == y.corner_count && x.alpha == y.alpha &&
+			   x.two_sided == y.two_sided;
+	};
+	const auto same_cluster = [](const VolumeCluster& x, const VolumeCluster& y)
+	{
+		return x.first_polygon == y.first_polygon && x.polygon_count == y.polygon_count && x.least == y.least && x.most == y.most;
+	};
+	return a.occluders.corners == b.occluders.corners && a.distance_m == b.distance_m && a.ray_distance_m == b.ray_distance_m &&
+		   a.exact_bounds == b.exact_bounds && a.compensation.range == b.compensation.range &&
+		   a.compensation.occlusion == b.compensation.occlusion &&
+		   std::equal(a.occluders.polygons.begin(), a.occluders.polygons.end(), b.occluders.polygons.begin(),
+					  b.occluders.polygons.end(), same) &&
+		   std::equal(a.clusters.begin(), a.clusters.end(), b.clusters.begin(), b.clusters.end(), same_cluster);
+}
+
 template <class Item> bool equalBytes(const std::vector<Item>& a, const std::vector<Item>& b)
 {
 	return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Item)) == 0);
+}
+
+std::string glbOf(const VolumeSet& volumes, const VolumeFileSettings& settings = {})
+{
+	return volumeGlb(volumes, settings, "test", "nook test", {}).bytes;
+}
+
+// A copy without slack at its end, so that a sanitizer detects overruns.
+class ExactBytes
+{
+public:
+	explicit ExactBytes(std::string_view bytes) : m_bytes(new char[bytes.size()]), m_size(bytes.size())
+	{
+		std::copy(bytes.begin(), bytes.end(), m_bytes.get());
+	}
+	const char* open(nook_volumes::Volumes& volumes) const
+	{
+		return volumes.open(m_bytes.get(), m_size, {meshopt_decodeVertexBuffer, meshopt_decodeIndexBuffer});
+	}
+
+private:
+	std::unique_ptr<char[]> m_bytes;
+	std::size_t m_size;
+};
+
+// Reads everything an engine would, into a sum, so that nothing is optimised away.
+double walked(const nook_volumes::Volumes& volumes)
+{
+	double sum = volumes.compensated(0.3) + volumes.header().distance;
+	for (std::size_t c = 0; c < volumes.clusterCount(); ++c)
+	{
+		const nook_volumes::Cluster& cluster = volumes.clusters()[c];
+		for (uint32_t p = cluster.first_polygon; p < cluster.first_polygon + cluster.polygon_count; ++p)
+		{
+			const nook_volumes::Polygon& polygon = volumes.polygons()[p];
+			for (uint32_t i = 0; i < nook_volumes::cornerCountOf(polygon); ++i)
+			{
+				double at[3];
+				volumes.position(cluster, volumes.corners()[polygon.first_corner + i], at);
+				sum += at[0] + at[1] + at[2];
+			}
+		}
+		for (uint32_t i = cluster.first_index; i < cluster.first_index + cluster.index_count; ++i)
+		{
+			const uint32_t at = volumes.indices()[i];
+			sum += volumes.hasPrisms() || volumes.sharesCorners() ? volumes.vertices()[cluster.first_vertex + at].x
+																  : volumes.corners()[cluster.first_corner + at].x;
+		}
+	}
+	return sum;
 }
 
 } // namespace
@@ -261,61 +381,6 @@ TEST_CASE("volume: prisms are closed, face outward, and are those of the rounded
 
 // Volumes as files: 16-bit round trips, and no file breaks its reader.
 
-namespace
-{
-
-std::string glbOf(const VolumeSet& volumes, const VolumeFileSettings& settings = {})
-{
-	return volumeGlb(volumes, settings, "test", "nook test", {}).bytes;
-}
-
-// A copy without slack at its end, so that a sanitizer detects overruns.
-class ExactBytes
-{
-public:
-	explicit ExactBytes(std::string_view bytes) : m_bytes(new char[bytes.size()]), m_size(bytes.size())
-	{
-		std::copy(bytes.begin(), bytes.end(), m_bytes.get());
-	}
-	const char* open(nook_volumes::Volumes& volumes) const
-	{
-		return volumes.open(m_bytes.get(), m_size, {meshopt_decodeVertexBuffer, meshopt_decodeIndexBuffer});
-	}
-
-private:
-	std::unique_ptr<char[]> m_bytes;
-	std::size_t m_size;
-};
-
-// Reads everything an engine would, into a sum, so that nothing is optimised away.
-double walked(const nook_volumes::Volumes& volumes)
-{
-	double sum = volumes.compensated(0.3) + volumes.header().distance;
-	for (std::size_t c = 0; c < volumes.clusterCount(); ++c)
-	{
-		const nook_volumes::Cluster& cluster = volumes.clusters()[c];
-		for (uint32_t p = cluster.first_polygon; p < cluster.first_polygon + cluster.polygon_count; ++p)
-		{
-			const nook_volumes::Polygon& polygon = volumes.polygons()[p];
-			for (uint32_t i = 0; i < nook_volumes::cornerCountOf(polygon); ++i)
-			{
-				double at[3];
-				volumes.position(cluster, volumes.corners()[polygon.first_corner + i], at);
-				sum += at[0] + at[1] + at[2];
-			}
-		}
-		for (uint32_t i = cluster.first_index; i < cluster.first_index + cluster.index_count; ++i)
-		{
-			const uint32_t at = volumes.indices()[i];
-			sum += volumes.hasPrisms() || volumes.sharesCorners() ? volumes.vertices()[cluster.first_vertex + at].x
-																  : volumes.corners()[cluster.first_corner + at].x;
-		}
-	}
-	return sum;
-}
-
-} // namespace
-
 TEST_CASE("emit: a file above its limit is refused with the options that would make it smaller", "[emit][volume]")
 {
 	const VolumeSet volumes = clustered(randomVolumes(700, glm::dvec3(0.0)), 100);
@@ -461,11 +526,7 @@ TEST_CASE("emit: the scene of a volume file is what its arrays hold", "[emit][vo
 		{
 			corners.insert({p.x, p.y, p.z});
 		}
-		std::size_t found = 0;
-		for (const glm::dvec3 p : level.positions)
-		{
-			found += corners.count({p.x, p.y, p.z});
-		}
+		const std::size_t found = sumOver(level.positions, [&](const glm::dvec3 p) { return corners.count({p.x, p.y, p.z}); });
 		CHECK(found == level.positions.size());
 
 		const VolumeFile prisms = volumeGlb(volumes, {VolumeLayout::prisms, false}, "test", "nook test", {});

@@ -5,7 +5,6 @@
 #include "testing.h"
 #include "vulkan_device.h"
 
-#include "core/lists.h"
 #include "emit/module.h"
 #include "shade/aov_gl_parts.h"
 
@@ -159,24 +158,18 @@ TEST_CASE("module: HLSL and Vulkan's GLSL draw the volumes and masks of nook sha
 		const GBuffer gbuffer = castGBuffer(tracer, view, 64, 48, NormalKind::geometric, {});
 		for (const int directions : within ? std::vector<int>{0} : std::vector<int>{0, 64}) // drivers take long to compile masks
 		{
-			AovSettings settings;
-			settings.mask = directions > 0;
-			settings.directions = std::max(directions, kLeastDirections);
-			settings.target = AovTarget::r32f;
+			AovSettings settings{
+				.mask = directions > 0, .directions = std::max(directions, kLeastDirections), .target = AovTarget::r32f};
 			const std::vector<float> expected = aovOnCpu(gbuffer, set, settings, {2, {}}).shaded.visibility;
 			const std::vector<float> glsl = drawnVolumes(gbuffer, set, GlslTarget::vulkan, directions);
-			CAPTURE(anyDevice().name(), within, directions, largestDifference(expected, glsl));
-			std::size_t beyond = 0;
-			for (std::size_t i = 0; i < glsl.size(); ++i)
-			{
-				beyond += std::fabs(glsl[i] - expected[i]) > 1.0F / 255.0F ? 1U : 0U;
-			}
-			CHECK(beyond <= glsl.size() / (directions > 0 ? 100 : 1000)); // a direction that just misses an edge is one bit
+			CAPTURE(anyDevice().name(), within, directions, differenceOf(expected, glsl).worst);
+			// A direction that just misses an edge is one bit.
+			CHECK(differenceOf(glsl, expected).beyond <= (directions > 0 ? 0.01 : 0.001));
 			CHECK(*std::min_element(glsl.begin(), glsl.end()) < 0.7F);
 			// Masks are equal bit by bit on llvmpipe; on a GPU an edge may be one direction off.
-			const float mask_bound = anyDevice().name().find("llvmpipe") != std::string::npos ? 0.0F : 1.0F / 64.0F;
-			CHECK(largestDifference(glsl, drawnVolumes(gbuffer, set, GlslTarget::hlsl60, directions)) <=
-				  (directions > 0 ? mask_bound : 1e-6F));
+			const double mask_bound = anyDevice().name().find("llvmpipe") != std::string::npos ? 0.0 : 1.0 / 64.0;
+			CHECK(differenceOf(glsl, drawnVolumes(gbuffer, set, GlslTarget::hlsl60, directions)).worst <=
+				  (directions > 0 ? mask_bound : 1e-6));
 		}
 	}
 }

@@ -2,7 +2,6 @@
 // WGSL from the GLSL of modules. webgpu_test.sh compares its pictures.
 #include "testing.h"
 
-#include "core/error.h"
 #include "emit/module_parts.h"
 
 namespace

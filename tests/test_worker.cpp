@@ -8,8 +8,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <new>
-#include <numeric>
 #include <string>
 #include <system_error>
 #include <vector>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/error.h"
+#include "core/lists.h"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "other_tools.h"
+#include "picture_errors.h"
 #include "temporary_folder.h"
 #include "testing.h"
 
@@ -481,17 +482,6 @@ void drawVulkan(const VulkanDevice& vulkan, const VulkanBindings& bindings, cons
 			draw(commands);
 			vkCmdEndRendering(commands);
 		});
-}
-
-inline float largestDifference(const std::vector<float>& a, const std::vector<float>& b)
-{
-	REQUIRE(a.size() == b.size());
-	float largest = 0.0F;
-	for (std::size_t i = 0; i < a.size(); ++i)
-	{
-		largest = std::max(largest, std::fabs(a[i] - b[i]));
-	}
-	return largest;
 }
 
 } // namespace nook::test

@@ -75,10 +75,6 @@ void declareBake(CLI::App& app, BakeOptions& options)
 	BakeSettings& settings = options.settings;
 	const OptionRule volumes{"--volumes", "--volumes", "no volumes"};
 	const OptionRule unwrap{"--unwrap", "--unwrap", "without it"};
-	const auto take_target = [&options](const std::string& name, const std::string& text)
-	{
-		takeTarget(options, name, text);
-	};
 	options.app = &app;
 	addLevelOptions(app, options.level);
 	addOptions(
@@ -111,7 +107,7 @@ void declareBake(CLI::App& app, BakeOptions& options)
 		 {"--max-vertices", takesWhole(settings.max_vertices, 3, 100'000'000),
 		  "With --max-error: no more vertices than that (default 2000000)", ofVertices({}, {{"--max-error", "both or none"}})},
 		 {"--to",
-		  takesParsed("TARGET", take_target),
+		  takesParsed("TARGET", [&options](const std::string& name, const std::string& text) { takeTarget(options, name, text); }),
 		  "Where the file has it: visibility, an attribute (default), color, color-alpha, texcoord:N, custom:NAME, texture, "
 		  "texture:orm",
 		  {.excludes = {{"--probes"}, {"--volumes", "one of them, since a difference has its own attribute"}}}},
@@ -222,16 +218,10 @@ void addBakeSettings(Facts& facts, const BakeOptions& options)
 	const bool probes = options.probes_m > 0.0;
 	const bool texture = options.texture_px > 0;
 	facts.text("kind", probes ? "probes" : texture ? "texture" : options.automatic ? "auto" : "vertices");
-	if (!options.volumes.empty())
-	{
-		facts.text("beside", volumesBy()[options.mask ? 1 : 0]);
-	}
+	facts.when(!options.volumes.empty()).text("beside", volumesBy()[options.mask ? 1 : 0]);
 	facts.text("falloff", kFalloffs[static_cast<std::size_t>(settings.falloff)]);
 	facts.number("radius_m", settings.radius_m);
-	if (settings.falloff == Falloff::alchemy)
-	{
-		facts.number("falloff_u_m", settings.falloff_u_m);
-	}
+	facts.when(settings.falloff == Falloff::alchemy).number("falloff_u_m", settings.falloff_u_m);
 	facts.whole(probes ? "rays_a_probe" : texture ? "rays_a_texel" : "rays_a_vertex", settings.rays);
 	facts.whole("seed", settings.seed);
 	if (!probes)
@@ -248,21 +238,12 @@ void addBakeSettings(Facts& facts, const BakeOptions& options)
 	if (settings.max_error > 0.0)
 	{
 		facts.number("max_error", settings.max_error);
-		if (!options.automatic)
-		{
-			facts.whole("max_vertices", settings.max_vertices);
-		}
+		facts.when(!options.automatic).whole("max_vertices", settings.max_vertices);
 	}
-	if (options.max_bytes > 0)
-	{
-		facts.whole("max_bytes", options.max_bytes);
-	}
+	facts.when(options.max_bytes > 0).whole("max_bytes", options.max_bytes);
 	for (const auto& [name, patterns] : {std::pair("occluders", &options.occluders), {"receivers", &options.receivers}})
 	{
-		if (!patterns->empty())
-		{
-			facts.texts(name, *patterns);
-		}
+		facts.when(!patterns->empty()).texts(name, *patterns);
 	}
 }
 

@@ -57,8 +57,7 @@ inline thread_local Call* t_call = nullptr;
 struct Working
 {
 	explicit Working(Call& call) : before(std::exchange(t_call, &call)) {}
-	Working(const Working&) = delete;
-	Working& operator=(const Working&) = delete;
+	Working& operator=(Working&&) = delete;
 	~Working()
 	{
 		t_call = before;

@@ -545,12 +545,10 @@ nook_status nook_require(uint32_t abi)
 {
 	const auto body = [abi]
 	{
-		if (abi != NOOK_ABI)
-		{
-			throw Error(static_cast<ExitCode>(NOOK_WRONG_VERSION), "nook " NOOK_VERSION ": found an interface of version " +
-																	   std::to_string(NOOK_ABI) + ", expected " +
-																	   std::to_string(abi));
-		}
+		refuseIf(abi != NOOK_ABI,
+				 "nook " NOOK_VERSION ": found an interface of version " + std::to_string(NOOK_ABI) + ", expected " +
+					 std::to_string(abi),
+				 static_cast<ExitCode>(NOOK_WRONG_VERSION));
 	};
 	return guarded(body);
 }

@@ -257,10 +257,9 @@ OptionValue takesBytes(uint64_t& value)
 		const std::string_view unit(result.ptr, static_cast<std::size_t>(text.data() + text.size() - result.ptr));
 		const auto* const found = std::find(kUnits.begin(), kUnits.end(), unit);
 		const auto at = static_cast<std::size_t>(found - kUnits.begin());
-		if (result.ec != std::errc{} || found == kUnits.end() || number == 0 || number > (uint64_t{1} << 50U) / kBytes[at])
-		{
-			refuseValue(option, text, "a number of bytes, KiB, MiB or GiB: 2GiB");
-		}
+		refuseValueIf(result.ec != std::errc{} || found == kUnits.end() || number == 0 ||
+						  number > (uint64_t{1} << 50U) / kBytes[at],
+					  option, text, "a number of bytes, KiB, MiB or GiB: 2GiB");
 		value = number * kBytes[at];
 	};
 	return takesParsed("SIZE", take);

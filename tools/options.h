@@ -166,11 +166,8 @@ template <class Value> struct ValueOf<std::optional<Value>>
 
 template <class Whole> OptionValue takesWhole(Whole& value, uint64_t least, uint64_t most, const std::string& kind = "N")
 {
-	const auto take = [&value](uint64_t number)
-	{
-		value = static_cast<typename ValueOf<Whole>::Type>(number);
-	};
-	return takesWholeBy(take, least, most, kind);
+	return takesWholeBy([&value](uint64_t number) { value = static_cast<typename ValueOf<Whole>::Type>(number); }, least, most,
+						kind);
 }
 
 template <class Number> OptionValue takesNumber(Number& value, double least, double most, const std::string& kind = "X")

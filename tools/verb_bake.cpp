@@ -254,10 +254,7 @@ Made makeVertices(const BakeOptions& options, const BakeInput& input, Facts& fac
 	}
 	addBakeResult(facts, options, bake);
 	addBakeCheck(facts, options, check, "other points of the surface");
-	if (settings.base)
-	{
-		facts.number("rmse_of_volumes", check.rmse_without);
-	}
+	facts.when(settings.base != nullptr).number("rmse_of_volumes", check.rmse_without);
 	addFile(facts, input, *baked);
 	if (settings.bent)
 	{

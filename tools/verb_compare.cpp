@@ -99,10 +99,8 @@ template <class Picture> std::vector<uint8_t> readMask(const std::string& path, 
 	refuseInputIf(mask.width_px != reference.width_px || mask.height_px != reference.height_px, path + ": size",
 				  std::to_string(mask.width_px) + "x" + std::to_string(mask.height_px) + " pixels",
 				  std::to_string(reference.width_px) + "x" + std::to_string(reference.height_px) + " as " + reference.path);
-	if (std::find(mask.surface.begin(), mask.surface.end(), uint8_t{1}) == mask.surface.end())
-	{
-		throw Error(ExitCode::invalid_input, path + ": depth: found sky alone, expected a surface somewhere");
-	}
+	refuseIf(std::find(mask.surface.begin(), mask.surface.end(), uint8_t{1}) == mask.surface.end(),
+			 path + ": depth: found sky alone, expected a surface somewhere", ExitCode::invalid_input);
 	return std::move(mask.surface);
 }
 
@@ -172,10 +170,7 @@ Facts headFacts(const CompareOptions& options, const Picture& test, const Pictur
 	facts.text("test_channel", test.channel);
 	facts.text("reference", nameOfFile(reference.path));
 	facts.text("reference_channel", reference.channel);
-	if (!options.mask.empty())
-	{
-		facts.text("mask", nameOfFile(options.mask));
-	}
+	facts.when(!options.mask.empty()).text("mask", nameOfFile(options.mask));
 	facts.whole("width", test.width_px);
 	facts.whole("height", test.height_px);
 	facts.whole("pixels", pixels);
@@ -218,14 +213,8 @@ std::string summaryOf(const CompareOptions& options, const VisibilityImage& test
 	facts.number("worst_test", c.worst.test);
 	facts.number("worst_reference", c.worst.reference);
 	facts.number("pixels_per_degree", options.settings.pixels_per_degree);
-	if (uncertainty)
-	{
-		facts.number("reference_standard_error", *uncertainty);
-	}
-	if (options.max_error)
-	{
-		facts.text("metric", nameOf(options.metric));
-	}
+	facts.when(uncertainty.has_value()).number("reference_standard_error", uncertainty.value_or(0.0));
+	facts.when(options.max_error.has_value()).text("metric", nameOf(options.metric));
 	addVerdict(facts, options, found);
 	return facts.json();
 }

@@ -249,14 +249,11 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 				  "as many files as methods that take one, " + std::to_string(needed) +
 					  (most > needed ? "; " + std::to_string(most) + " with those that may" : ""));
 	const std::vector<std::string>& files = options.outputs.files;
-	if (const std::string& space = options.settings.header_namespace; options.given("--namespace") && !isIdentifier(space))
-	{
-		refuseValue("--namespace", space, "letters, digits and single underscores, a letter first");
-	}
-	if (std::none_of(files.begin(), files.end(), hasNamespace))
-	{
-		refuseGiven(*options.app, {"--namespace"}, "without a .h or .cs file, expected -o FILE.h as well");
-	}
+	const std::string& space = options.settings.header_namespace;
+	refuseValueIf(options.given("--namespace") && !isIdentifier(space), "--namespace", space,
+				  "letters, digits and single underscores, a letter first");
+	refuseIf(options.given("--namespace") && std::none_of(files.begin(), files.end(), hasNamespace),
+			 "--namespace: found without a .h or .cs file, expected -o FILE.h as well");
 	const bool module = std::any_of(files.begin(), files.end(), isShader);
 	const bool glsl = module || ((options.given("--glsl") || options.wgsl) && std::any_of(files.begin(), files.end(), isScript));
 	checkLanguage(options);
@@ -277,14 +274,10 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	{
 		refuseSlicesWithTile(given);
 	}
-	if (options.settings.gather)
-	{
-		refuseGiven(*options.app, {"--main"}, "with --gather, which is a function for your shaders, expected one of the two");
-	}
-	if (methods.size() > 1)
-	{
-		refuseGiven(*options.app, {"--main"}, "with " + std::to_string(methods.size()) + " methods, expected one method");
-	}
+	refuseIf(options.settings.gather && options.given("--main"),
+			 "--main: found with --gather, which is a function for your shaders, expected one of the two");
+	refuseIf(methods.size() > 1 && options.given("--main"),
+			 "--main: found with " + std::to_string(methods.size()) + " methods, expected one method");
 }
 
 std::string featuresOf(const EmitOptions& options, bool of_header)
@@ -414,10 +407,7 @@ void run(EmitOptions& options, VerbProgress&)
 		item.whole("variants", method.variants.size());
 	}
 	checkWindows(settings);
-	if (!tiles)
-	{
-		refuseGiven(*options.app, {"--tile"}, "with patterns alone, expected a tile among --patterns");
-	}
+	refuseIf(!tiles && options.given("--tile"), "--tile: found with patterns alone, expected a tile among --patterns");
 	refuseIf(settings.normals_from_depth && !readsNormals(settings),
 			 "--normals from-depth: found a module that asks for no normal, expected one that does");
 	const auto contextOf = [&](bool glsl)

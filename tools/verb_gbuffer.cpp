@@ -163,14 +163,7 @@ void cast(const GBufferOptions& options, VerbProgress& progress)
 
 void run(GBufferOptions& options, VerbProgress& progress)
 {
-	if (options.level.level.ends_with(".exr"))
-	{
-		convert(options, progress);
-	}
-	else
-	{
-		cast(options, progress);
-	}
+	options.level.level.ends_with(".exr") ? convert(options, progress) : cast(options, progress);
 }
 
 } // namespace

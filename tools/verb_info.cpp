@@ -62,10 +62,7 @@ void addKind(Facts& facts, const std::string& kind, Domain domain, std::size_t c
 // A fact whose name is its words, unless it is empty.
 void addWords(Facts& facts, const std::string& name, const std::string& value)
 {
-	if (!value.empty())
-	{
-		facts.text(name, value, name);
-	}
+	facts.when(!value.empty()).text(name, value, name);
 }
 
 void describe(PatternFile& file, const InfoOptions& options, const RunSettings& settings, Facts& facts)
@@ -119,10 +116,7 @@ void describe(TileFile& file, const InfoOptions& options, const RunSettings& set
 		refuseIf(behind.empty() && !options.filters.empty(),
 				 options.file + ": --filter: found too many taps, frames and samples to measure, expected fewer",
 				 ExitCode::invalid_input);
-		if (behind.empty())
-		{
-			facts.line("behind filters: not measured, --filter asks for it");
-		}
+		facts.when(behind.empty()).line("behind filters: not measured, --filter asks for it");
 		facts.measures("behind", behind, behind.empty() ? "" : "behind filters");
 	}
 	if (file.quality)

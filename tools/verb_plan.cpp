@@ -208,8 +208,7 @@ constexpr double kVerticesPerTriangle = 0.75; // with values of their own, as in
 
 WorkFacts factsOf(const ParsedCommand& parsed, const std::string& folder, const std::vector<std::string>& outputs, PixelsOf& pixels)
 {
-	WorkFacts facts;
-	facts.verb = parsed.name;
+	WorkFacts facts{.verb = parsed.name};
 	facts.triangles = sumOver(parsed.values("LEVEL"), [&folder](const std::string& level) { return trianglesOf(folder, level); });
 	for (const char* option : {"--gbuffer", "FILE.exr", "FILE"})
 	{
@@ -431,10 +430,9 @@ void writePlan(const Plan& plan, const std::string& folder)
 	const fs::path file = nativePath(folder) / kPlanFile;
 	if (fs::exists(file))
 	{
-		if (const Plan old = readPlan(readFile(file.string()), file.string()); old.title != plan.title)
-		{
-			refuse(folder + ": found the plan of '" + old.title + "', expected that of '" + plan.title + "', or a new folder");
-		}
+		const Plan old = readPlan(readFile(file.string()), file.string());
+		refuseIf(old.title != plan.title,
+				 folder + ": found the plan of '" + old.title + "', expected that of '" + plan.title + "', or a new folder");
 	}
 	std::error_code failed;
 	fs::create_directories(nativePath(folder), failed);

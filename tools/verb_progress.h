@@ -4,7 +4,6 @@
 
 #include "core/error.h"
 #include "core/progress.h"
-#include "core/remaining_time.h"
 #include "pattern/recipe.h"
 
 #include <chrono>
@@ -60,8 +59,7 @@ class ProgressLog
 public:
 	// "-" is standard output. Replaces a file only if it is such a log. Throws Error (usage, file).
 	ProgressLog(const std::string& path, std::string_view verb);
-	ProgressLog(const ProgressLog&) = delete;
-	ProgressLog& operator=(const ProgressLog&) = delete;
+	ProgressLog& operator=(ProgressLog&&) = delete;
 	~ProgressLog();
 
 	bool isOnTerminal() const;
@@ -89,9 +87,7 @@ private:
 class VerbProgress
 {
 public:
-	VerbProgress() = default;
-	VerbProgress(const VerbProgress&) = delete;
-	VerbProgress& operator=(const VerbProgress&) = delete;
+	VerbProgress& operator=(VerbProgress&&) = delete;
 
 	// Before start(): the run is a part, or a merge of parts. `units` must outlive what start() returns.
 	void divide(WorkUnits& units)

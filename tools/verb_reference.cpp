@@ -153,23 +153,11 @@ void addSettings(Facts& facts, const ReferenceOptions& options)
 		facts.text("from", kSources[static_cast<std::size_t>(settings.source)]);
 	}
 	facts.number("radius_m", settings.radius_m);
-	if (settings.falloff == Falloff::alchemy)
-	{
-		facts.number("falloff_u_m", settings.falloff_u_m);
-	}
+	facts.when(settings.falloff == Falloff::alchemy).number("falloff_u_m", settings.falloff_u_m);
 	facts.whole("rays_a_point", settings.rays);
-	if (settings.max_error > 0.0)
-	{
-		facts.number("max_error", settings.max_error);
-	}
-	if (settings.lift_m > 0.0)
-	{
-		facts.number("lift_m", settings.lift_m);
-	}
-	if (!options.occluders.empty())
-	{
-		facts.texts("occluders", options.occluders);
-	}
+	facts.when(settings.max_error > 0.0).number("max_error", settings.max_error);
+	facts.when(settings.lift_m > 0.0).number("lift_m", settings.lift_m);
+	facts.when(!options.occluders.empty()).texts("occluders", options.occluders);
 	facts.whole("seed", settings.seed);
 }
 

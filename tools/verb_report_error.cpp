@@ -141,11 +141,8 @@ void writePages(const ErrorOptions& options, std::span<const ErrorReport> report
 
 void join(const ErrorOptions& options)
 {
-	const auto read = [](const std::string& path)
-	{
-		return errorReportFrom(readFile(path), path);
-	};
-	writePages(options, mapped(options.join, read), "", options.join);
+	writePages(options, mapped(options.join, [](const std::string& path) { return errorReportFrom(readFile(path), path); }), "",
+			   options.join);
 }
 
 // One line for the worst, or nothing.
@@ -226,14 +223,7 @@ void runReport(ErrorOptions& options, VerbProgress& progress)
 	inputs.push_back(options.baseline);
 	std::erase(inputs, "");
 	checkOutputs(options.outputs, kPages, inputs);
-	if (options.join.empty())
-	{
-		measure(options, progress);
-	}
-	else
-	{
-		join(options);
-	}
+	options.join.empty() ? measure(options, progress) : join(options);
 }
 
 } // namespace

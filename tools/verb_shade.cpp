@@ -74,11 +74,8 @@ std::span<const std::string_view> allMethods()
 // "vo-line: volumetric obscurance by lines; ...; bake: of --bake"
 std::string whatMethodsAre()
 {
-	const auto textOfRow = [](const MethodRow& row)
-	{
-		return std::string(row.name) + ": " + std::string(row.what);
-	};
-	return joinedText(methodTable(), "; ", textOfRow) +
+	return joinedText(methodTable(), "; ",
+					  [](const MethodRow& row) { return std::string(row.name) + ": " + std::string(row.what); }) +
 		   joinedText(kindsBesideMethods(), "",
 					  [](const AssetKind* kind) { return "; " + std::string(kind->name) + ": of " + std::string(kind->option); });
 }
@@ -400,10 +397,7 @@ void addVolumeFacts(Facts& facts, const ComposeSettings& compose, const Composed
 	facts.number("ray_distance_m", compose.aov.mask ? drawn.distance_m : drawn.ray_distance_m);
 	facts.whole("volumes", drawn.volumes.volumes);
 	facts.whole("fragments", drawn.volumes.fragments);
-	if (compose.aov.every_px > 1)
-	{
-		facts.whole("pixels_alone", drawn.volumes.pixels_alone);
-	}
+	facts.when(compose.aov.every_px > 1).whole("pixels_alone", drawn.volumes.pixels_alone);
 	if (compose.gl)
 	{
 		facts.whole("clusters_drawn", drawn.volumes.clusters_drawn);
@@ -415,10 +409,7 @@ void addVolumeFacts(Facts& facts, const ComposeSettings& compose, const Composed
 		return;
 	}
 	facts.text("compensation", compose.aov.compensate ? "curve" : "none");
-	if (compose.gl)
-	{
-		facts.text("accumulate", kTargets[static_cast<std::size_t>(compose.aov.target)]);
-	}
+	facts.when(compose.gl).text("accumulate", kTargets[static_cast<std::size_t>(compose.aov.target)]);
 }
 
 void addTimes(Facts& facts, const Shaded& shaded)
@@ -455,23 +446,11 @@ Facts factsOf(const ShadeOptions& options, const GBuffer& gbuffer, const Compose
 	{
 		addVolumeFacts(facts, compose, drawn);
 	}
-	if (drawn.baked_pixels)
-	{
-		facts.whole("baked_pixels", *drawn.baked_pixels);
-	}
-	if (drawn.moving_pixels)
-	{
-		facts.whole("moving_pixels", *drawn.moving_pixels);
-	}
-	if (compose.screen)
-	{
-		facts.text("filter", filterText(compose.shade));
-	}
+	facts.when(drawn.baked_pixels.has_value()).whole("baked_pixels", drawn.baked_pixels.value_or(0));
+	facts.when(drawn.moving_pixels.has_value()).whole("moving_pixels", drawn.moving_pixels.value_or(0));
+	facts.when(compose.screen).text("filter", filterText(compose.shade));
 	facts.text("resolution", kResolutions[options.resolution]);
-	if (compose.screen)
-	{
-		facts.whole("window", drawn.samples.size);
-	}
+	facts.when(compose.screen).whole("window", drawn.samples.size);
 	if (options.timing)
 	{
 		addTimes(facts, drawn.shaded);

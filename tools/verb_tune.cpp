@@ -93,10 +93,8 @@ double secondsOf(const std::string& text)
 	const std::from_chars_result read = std::from_chars(text.data(), text.data() + text.size(), value);
 	const std::string unit(read.ptr, text.data() + text.size());
 	const double seconds = unit == "s" ? 1.0 : unit == "ms" ? 1e-3 : unit == "us" ? 1e-6 : 0.0;
-	if (read.ec != std::errc{} || !std::isfinite(value) || !(value * seconds > 0.0))
-	{
-		refuseValue("--budget", text, "a time above 0 with its unit, such as 1.0ms, 800us or 0.01s");
-	}
+	refuseValueIf(read.ec != std::errc{} || !std::isfinite(value) || !(value * seconds > 0.0), "--budget", text,
+				  "a time above 0 with its unit, such as 1.0ms, 800us or 0.01s");
 	return value * seconds;
 }
 

@@ -13,7 +13,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 namespace nook

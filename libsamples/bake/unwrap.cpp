@@ -135,11 +135,9 @@ ChartedLevel chartLevel(const Level& level, std::span<const UnwrapPiece> pieces,
 		std::unordered_map<uint32_t, uint32_t> placed; // chart → index into `scaled`
 		for (const uint32_t c : of_piece[from])
 		{
-			double there = 0.0;
-			for (const uint32_t t : charts[c].triangles)
-			{
-				there += 0.5 * glm::length(twiceAreaOf(level, pieces[p].triangles[t - first_of[from]]));
-			}
+			const double there =
+				sumOver(charts[c].triangles, [&](const uint32_t t)
+						{ return 0.5 * glm::length(twiceAreaOf(level, pieces[p].triangles[t - first_of[from]])); });
 			if (there > 0.0 && there < kFarthest_m * kFarthest_m)
 			{
 				placed[c] = static_cast<uint32_t>(made.scaled.size());

@@ -6,7 +6,6 @@
 #include "core/lists.h"
 #include "core/math.h"
 #include "core/parallel.h"
-#include "scene/ray_triangle.h"
 #include "scene/topology.h"
 
 #include <glm/common.hpp>

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace nook
 {
@@ -39,7 +40,10 @@ std::string measureLines(const std::vector<Measure>& measures)
 
 void Facts::add(std::string_view name, std::string json, std::string_view words, std::string shown)
 {
-	m_facts.push_back({std::string(name), std::move(json), std::string(words), std::move(shown)});
+	if (!std::exchange(m_skips, false))
+	{
+		m_facts.push_back({std::string(name), std::move(json), std::string(words), std::move(shown)});
+	}
 }
 
 void Facts::text(std::string_view name, std::string_view value, std::string_view words)

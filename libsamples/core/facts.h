@@ -38,6 +38,13 @@ public:
 		whole(name, value, value == Whole{} ? std::string() : "  " + std::string(words));
 	}
 
+	// The next fact is added only if the condition holds. It is made either way.
+	Facts& when(bool condition)
+	{
+		m_skips = !condition;
+		return *this;
+	}
+
 	// For people alone: a whole line, without its end.
 	void line(std::string_view words);
 
@@ -57,6 +64,7 @@ private:
 	std::string fields() const;
 
 	std::vector<Fact> m_facts;
+	bool m_skips = false; // the next one
 };
 
 // Measures as a JSON object, one per line.

@@ -30,8 +30,7 @@ class SignalsHeld
 {
 public:
 	SignalsHeld();
-	SignalsHeld(const SignalsHeld&) = delete;
-	SignalsHeld& operator=(const SignalsHeld&) = delete;
+	SignalsHeld& operator=(SignalsHeld&&) = delete;
 	~SignalsHeld();
 };
 
@@ -67,9 +66,7 @@ private:
 class NewFolders
 {
 public:
-	NewFolders() = default;
-	NewFolders(const NewFolders&) = delete;
-	NewFolders& operator=(const NewFolders&) = delete;
+	NewFolders& operator=(NewFolders&&) = delete;
 	~NewFolders();
 
 	// Creates a folder and its missing parents.
@@ -100,9 +97,7 @@ void writeFile(const std::string& path, std::string_view bytes);
 class OutputSet
 {
 public:
-	OutputSet() = default;
-	OutputSet(const OutputSet&) = delete;
-	OutputSet& operator=(const OutputSet&) = delete;
+	OutputSet& operator=(OutputSet&&) = delete;
 
 	// Arguments as for writeFile. Throws Error (file).
 	void add(const std::string& path, std::string_view bytes);

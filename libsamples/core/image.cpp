@@ -16,7 +16,6 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 
 #include <png.h>
@@ -64,10 +63,7 @@ std::size_t storedBytes(const std::vector<EncodedAlpha>& pictures)
 // For a file that the worker that is to read it declines, or that a missing OpenImageIO would read.
 [[noreturn]] void refuseDeclined(const std::string& name, const std::string& defect)
 {
-	if (!defect.empty())
-	{
-		refuseInput(name, oneLine(defect), "an image that can be read");
-	}
+	refuseInputIf(!defect.empty(), name, oneLine(defect), "an image that can be read");
 	refuseInput(name, "a picture that only OpenImageIO reads, and none of the version that nook was built with",
 				"PNG, JPEG, TGA, BMP, EXR or uncompressed KTX2", ExitCode::unsupported);
 }
@@ -177,11 +173,8 @@ std::string fileOf(const PngPicture& picture, const char* colours, const Notes& 
 	}
 	const bool written = info != nullptr && write(png, info, picture, texts);
 	png_destroy_write_struct(&png, &info);
-	if (!written)
-	{
-		throw Error(ExitCode::runtime,
-					std::string("image: ") + (writer.problem[0] == '\0' ? "libpng does not start" : writer.problem.data()));
-	}
+	refuseIf(!written, std::string("image: ") + (writer.problem[0] == '\0' ? "libpng does not start" : writer.problem.data()),
+			 ExitCode::runtime);
 	return std::move(writer.bytes);
 }
 
@@ -249,11 +242,8 @@ std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, 
 				name = pictures[i].name;
 				receive(decoded[i], from);
 				texels += decoded[i].image ? pictures[i].uses * decoded[i].image->alpha.size() : 0;
-				if (texels > most_in_all)
-				{
-					refuseInput(all, "masks of more than " + std::to_string(most_in_all) + " texels in all",
-								"fewer or smaller ones (max-texels)");
-				}
+				refuseInputIf(texels > most_in_all, all, "masks of more than " + std::to_string(most_in_all) + " texels in all",
+							  "fewer or smaller ones (max-texels)");
 			}
 		};
 		isolate(ask(worker, kDecodeAlphas), name, limits, send_all, take);

@@ -67,11 +67,8 @@ std::size_t channelsOf(std::string_view bytes, const std::string& name)
 	const uint64_t scheme = littleEndian(bytes, 44, 4);
 	const auto* const plain =
 		std::find_if(kPlainFormats.begin(), kPlainFormats.end(), [&](const PlainFormat& known) { return known.code == format; });
-	if (scheme != 0 || plain == kPlainFormats.end())
-	{
-		refuseInput(name + ": KTX2", schemeName(scheme, format),
-					"uncompressed ones, as `ktx transcode --target rgba8 IN.ktx2 OUT.ktx2` makes them", ExitCode::unsupported);
-	}
+	refuseInputIf(scheme != 0 || plain == kPlainFormats.end(), name + ": KTX2", schemeName(scheme, format),
+				  "uncompressed ones, as `ktx transcode --target rgba8 IN.ktx2 OUT.ktx2` makes them", ExitCode::unsupported);
 	return plain->channels;
 }
 
@@ -105,10 +102,7 @@ void answerAlphas(ValueReader& from, ValueWriter& answer,
 std::size_t checkedTexels(int width_px, int height_px, int channels, std::size_t most, const std::string& name, const char* option)
 {
 	const auto texels = static_cast<std::size_t>(std::max(width_px, 0)) * static_cast<std::size_t>(std::max(height_px, 0));
-	if (texels > most)
-	{
-		refuseInput(name, std::to_string(texels) + " texels", "at most " + std::to_string(most) + option);
-	}
+	refuseInputIf(texels > most, name, std::to_string(texels) + " texels", "at most " + std::to_string(most) + option);
 	if (texels == 0 || channels < 1 || texels > kMaxImageValues / static_cast<std::size_t>(channels))
 	{
 		refuseInput(name,
@@ -149,10 +143,8 @@ bool isKtx2(std::string_view bytes)
 Decoded<AlphaImage> alphaOfKtx2(std::string_view bytes, const EncodedAlpha& picture, std::size_t max_texels)
 {
 	const std::string& name = picture.name;
-	if (bytes.size() < kHeader + kLevel)
-	{
-		refuseInput(name + ": KTX2", std::to_string(bytes.size()) + " bytes", "at least " + std::to_string(kHeader + kLevel));
-	}
+	refuseInputIf(bytes.size() < kHeader + kLevel, name + ": KTX2", std::to_string(bytes.size()) + " bytes",
+				  "at least " + std::to_string(kHeader + kLevel));
 	const std::size_t channels = channelsOf(bytes, name);
 	const uint64_t width = littleEndian(bytes, 20, 4);
 	const uint64_t height = littleEndian(bytes, 24, 4);
@@ -166,11 +158,9 @@ Decoded<AlphaImage> alphaOfKtx2(std::string_view bytes, const EncodedAlpha& pict
 						std::to_string(layers) + " layers, " + std::to_string(faces) + " faces",
 					"one picture");
 	}
-	if (height > max_texels / width || std::max(width, height) > INT32_MAX)
-	{
-		refuseInput(name, std::to_string(width) + "x" + std::to_string(height) + " texels",
-					"at most " + std::to_string(max_texels) + " (max-texels)");
-	}
+	refuseInputIf(height > max_texels / width || std::max(width, height) > INT32_MAX, name,
+				  std::to_string(width) + "x" + std::to_string(height) + " texels",
+				  "at most " + std::to_string(max_texels) + " (max-texels)");
 	const uint64_t offset = littleEndian(bytes, kHeader, 8);
 	const uint64_t length = littleEndian(bytes, kHeader + 8, 8);
 	const uint64_t texels = width * height;

@@ -52,10 +52,7 @@ void greet(const ChildProcess& worker, const std::string& program)
 std::unique_ptr<ChildProcess> startWorker(const std::string& program)
 {
 	const std::optional<std::string> path = pathOfWorker(program);
-	if (!path)
-	{
-		throw Error(ExitCode::file, program + ": found no such program, expected this part of nook next to its libraries");
-	}
+	refuseIf(!path, program + ": found no such program, expected this part of nook next to its libraries", ExitCode::file);
 	std::unique_ptr<ChildProcess> worker;
 	try
 	{

@@ -137,19 +137,13 @@ JsonValue JsonValue::at(std::size_t index) const
 
 std::size_t JsonValue::arraySize() const
 {
-	if (!value->is_array())
-	{
-		expected("an array");
-	}
+	require(value->is_array(), "an array");
 	return value->size();
 }
 
 void JsonValue::requireObject() const
 {
-	if (!value->is_object())
-	{
-		expected("an object");
-	}
+	require(value->is_object(), "an object");
 }
 
 void JsonValue::allowOnly(std::initializer_list<std::string_view> fields) const
@@ -166,15 +160,9 @@ void JsonValue::allowOnly(std::initializer_list<std::string_view> fields) const
 
 double JsonValue::number() const
 {
-	if (!value->is_number())
-	{
-		expected("a number");
-	}
+	require(value->is_number(), "a number");
 	const auto result = value->get<double>();
-	if (!std::isfinite(result))
-	{
-		expected("a finite number");
-	}
+	require(std::isfinite(result), "a finite number");
 	return result;
 }
 
@@ -209,28 +197,19 @@ uint64_t JsonValue::whole(uint64_t most) const
 
 std::size_t JsonValue::indexInto(std::size_t size) const
 {
-	if (size == 0)
-	{
-		expected("no such field, since the file has none");
-	}
+	require(size > 0, "no such field, since the file has none");
 	return static_cast<std::size_t>(whole(size - 1));
 }
 
 bool JsonValue::boolean() const
 {
-	if (!value->is_boolean())
-	{
-		expected("true or false");
-	}
+	require(value->is_boolean(), "true or false");
 	return value->get<bool>();
 }
 
 std::string JsonValue::string() const
 {
-	if (!value->is_string())
-	{
-		expected("a string");
-	}
+	require(value->is_string(), "a string");
 	return value->get<std::string>();
 }
 

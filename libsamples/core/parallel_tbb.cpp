@@ -51,11 +51,10 @@ void checkThreads(int threads)
 	{
 		thread.join();
 	}
-	if (!failed.empty())
-	{
-		throw Error(ExitCode::runtime, "threads: found " + std::to_string(count) + " that can be started (" + failed +
-										   "), expected " + std::to_string(threads) + " (threads)");
-	}
+	refuseIf(!failed.empty(),
+			 "threads: found " + std::to_string(count) + " that can be started (" + failed + "), expected " +
+				 std::to_string(threads) + " (threads)",
+			 ExitCode::runtime);
 	checked = threads;
 }
 

@@ -148,10 +148,8 @@ std::optional<Image> imageOf(const std::string& bytes, const std::string& name)
 	for (auto at = header.begin(); at != header.end(); ++at)
 	{
 		takeAttribute(at.name(), at.attribute(), image);
-		if (image.notes.size() + image.matrices.size() > kMostNames)
-		{
-			refuseInput(name, "more than " + std::to_string(kMostNames) + " attributes", "fewer");
-		}
+		refuseInputIf(image.notes.size() + image.matrices.size() > kMostNames, name,
+					  "more than " + std::to_string(kMostNames) + " attributes", "fewer");
 	}
 	image.channels = channelNames(header);
 	if (image.channels.empty())

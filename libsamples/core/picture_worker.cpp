@@ -27,9 +27,7 @@ namespace
 class PictureReader
 {
 public:
-	PictureReader() = default;
-	PictureReader(const PictureReader&) = delete;
-	PictureReader& operator=(const PictureReader&) = delete;
+	PictureReader& operator=(PictureReader&&) = delete;
 	virtual ~PictureReader() = default;
 
 	// Reads the next row, and what follows the last; values of 16 bits are big-endian.

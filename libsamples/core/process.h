@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -40,8 +39,7 @@ class ChildProcess
 {
 public:
 	explicit ChildProcess(const std::string& path); // throws std::system_error if it cannot be started
-	ChildProcess(const ChildProcess&) = delete;
-	ChildProcess& operator=(const ChildProcess&) = delete;
+	ChildProcess& operator=(ChildProcess&&) = delete;
 	~ChildProcess(); // kills it
 
 	const WorkerStreams& streams() const

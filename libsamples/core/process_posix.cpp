@@ -104,8 +104,7 @@ public:
 		::posix_spawnattr_setsigdefault(&attributes, &signals);
 		::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
 	}
-	SpawnSettings(const SpawnSettings&) = delete;
-	SpawnSettings& operator=(const SpawnSettings&) = delete;
+	SpawnSettings& operator=(SpawnSettings&&) = delete;
 	~SpawnSettings()
 	{
 		::posix_spawn_file_actions_destroy(&actions);

@@ -41,8 +41,7 @@ class FileLock
 {
 public:
 	explicit FileLock(const std::string& path);
-	FileLock(const FileLock&) = delete;
-	FileLock& operator=(const FileLock&) = delete;
+	FileLock& operator=(FileLock&&) = delete;
 	~FileLock();
 
 private:

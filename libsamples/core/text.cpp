@@ -140,11 +140,8 @@ bool isIdentifier(std::string_view name)
 	{
 		return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 	};
-	const auto isPart = [&](char c)
-	{
-		return isLetter(c) || (c >= '0' && c <= '9') || c == '_';
-	};
-	return !name.empty() && isLetter(name.front()) && name.back() != '_' && std::all_of(name.begin(), name.end(), isPart) &&
+	return !name.empty() && isLetter(name.front()) && name.back() != '_' &&
+		   std::all_of(name.begin(), name.end(), [&](char c) { return isLetter(c) || (c >= '0' && c <= '9') || c == '_'; }) &&
 		   name.find("__") == std::string_view::npos && !name.starts_with("gl_");
 }
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <new>
 #include <system_error>
 
@@ -49,10 +48,8 @@ void serve(const WorkerStreams& streams, std::span<const WorkerFunction> functio
 	{
 		const auto found =
 			std::find_if(functions.begin(), functions.end(), [&](const WorkerFunction& one) { return one.name == name; });
-		if (found == functions.end())
-		{
-			throw Error(ExitCode::runtime, name + ": found no such function in this worker, expected parts of nook of one build");
-		}
+		refuseIf(found == functions.end(), name + ": found no such function in this worker, expected parts of nook of one build",
+				 ExitCode::runtime);
 		found->run(request, answer);
 		request.finish();
 		answer.finish(ExitCode::ok, "");

@@ -253,11 +253,10 @@ Store::Store(std::string folder, std::string version, bool must_keep)
 {
 	std::error_code problem;
 	m_new.make(nativePath(m_folder), problem);
-	if (!fs::is_directory(nativePath(m_folder)))
-	{
-		throw Error(ExitCode::file, m_folder + ": found " + (fs::exists(nativePath(m_folder)) ? "a file" : problem.message()) +
-										", expected a folder for finished work, or a place for one");
-	}
+	refuseIf(!fs::is_directory(nativePath(m_folder)),
+			 m_folder + ": found " + (fs::exists(nativePath(m_folder)) ? "a file" : problem.message()) +
+				 ", expected a folder for finished work, or a place for one",
+			 ExitCode::file);
 }
 
 std::string Store::pathOf(const std::string& key) const

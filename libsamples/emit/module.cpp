@@ -250,12 +250,9 @@ std::string arrayText(const ModuleSettings& settings, const std::string& type, c
 					  const std::vector<std::string>& elements, const std::string& before, const std::string& space)
 {
 	const std::string size = "[" + std::to_string(elements.size()) + "]";
-	const auto textOf = [&type](const std::string& element)
-	{
-		return type + "(" + element + ")";
-	};
 	return (isHlsl(settings) ? "static const " : "const ") + type + " " + name + size + " = " +
-		   (isHlsl(settings) ? "{" : type + size + "(") + before + joinedText(elements, "," + space, textOf) +
+		   (isHlsl(settings) ? "{" : type + size + "(") + before +
+		   joinedText(elements, "," + space, [&type](const std::string& element) { return type + "(" + element + ")"; }) +
 		   (isHlsl(settings) ? "};\n" : ");\n");
 }
 

@@ -269,11 +269,8 @@ std::string passesText(const ModuleSettings& settings, const ModuleMethod& metho
 // Sum over all passes, per pixel of the picture.
 std::string totalText(const ModuleSettings& settings, const ModuleMethod& method)
 {
-	const auto readsBy = [&](const ShadePass& pass)
-	{
-		return pass.fills ? 0.0 : texelsOf(pass) * depthReadsOf(settings, method, pass);
-	};
-	return numberText(sumOver(planFor(settings, method).passes, readsBy));
+	return numberText(sumOver(planFor(settings, method).passes, [&](const ShadePass& pass)
+							  { return pass.fills ? 0.0 : texelsOf(pass) * depthReadsOf(settings, method, pass); }));
 }
 
 // "3 samples at each of 3 radii, other ones in each pixel of 4 x 4"

@@ -4,7 +4,6 @@
 
 #include "methods/settings.h"
 
-#include <span>
 #include <string_view>
 #include <vector>
 

@@ -120,13 +120,10 @@ void checkEmitFeatures(const GivenFeatures& given, const ShadeSettings& settings
 {
 	for (const FeatureRow* const row : given)
 	{
-		const auto takes = [row](ShadeMethod method)
-		{
-			return takesFeature(rowOf(method), *row);
-		};
-		refuseIf(std::none_of(methods.begin(), methods.end(), takes), std::string(row->option) +
-																		  ": found without a method that it changes, expected " +
-																		  namesOfTaking(*row, true) + " among --methods");
+		refuseIf(
+			std::none_of(methods.begin(), methods.end(), [row](ShadeMethod method) { return takesFeature(rowOf(method), *row); }),
+			std::string(row->option) + ": found without a method that it changes, expected " + namesOfTaking(*row, true) +
+				" among --methods");
 	}
 	checkValues(given, settings);
 }

@@ -7,7 +7,6 @@
 #include "methods/recipes.h"
 
 #include <optional>
-#include <span>
 #include <string_view>
 #include <vector>
 

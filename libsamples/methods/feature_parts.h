@@ -16,30 +16,22 @@ using S = ShadeSettings;
 // Accesses a member of the settings by its path.
 template <auto... path> FeatureValue member()
 {
-	const auto get = [](const S& settings)
-	{
-		return static_cast<double>((settings.*....*path));
-	};
 	const auto set = [](S& settings, double value)
 	{
 		auto& held = (settings.*....*path);
 		held = static_cast<std::remove_reference_t<decltype(held)>>(value);
 	};
-	return {get, set};
+	return {[](const S& settings) { return static_cast<double>((settings.*....*path)); }, set};
 }
 
 // Likewise for choices of yes, then no.
 template <auto... path> FeatureValue yesNo()
 {
-	const auto get = [](const S& settings)
-	{
-		return (settings.*....*path) ? 0.0 : 1.0;
-	};
 	const auto set = [](S& settings, double value)
 	{
 		(settings.*....*path) = value == 0.0;
 	};
-	return {get, set};
+	return {[](const S& settings) { return (settings.*....*path) ? 0.0 : 1.0; }, set};
 }
 
 // A parameter in ShadeSettings::own, for options that a single method has.

@@ -20,8 +20,7 @@ std::vector<FilterChoice> filtersFor(GridSize size)
 // nook's form of a method: its patterns, a variant for each of 4 × 4 pixels.
 CandidateAxes oursAxes(GridSize size, const std::vector<int>& counts)
 {
-	CandidateAxes axes;
-	axes.counts = counts;
+	CandidateAxes axes{.counts = counts};
 	axes.sources =
 		upTo<SampleSource>(size, {SampleSource::tile}, {SampleSource::tile}, {SampleSource::tile, SampleSource::refined});
 	axes.filters = filtersFor(size);
@@ -31,12 +30,8 @@ CandidateAxes oursAxes(GridSize size, const std::vector<int>& counts)
 // By the recipe `rays`, which has three radii for volumetric obscurance, with so many samples at each.
 CandidateAxes fittedAxes(GridSize size, const std::vector<int>& counts)
 {
-	CandidateAxes axes;
-	axes.counts = counts;
-	axes.sources = {SampleSource::tile};
-	axes.filters = filtersFor(size);
-	axes.half = kBothResolutions;
-	axes.rays = {true};
+	CandidateAxes axes{
+		.counts = counts, .sources = {SampleSource::tile}, .filters = filtersFor(size), .half = kBothResolutions, .rays = {true}};
 	return axes;
 }
 
@@ -117,10 +112,7 @@ std::vector<CandidateAxes> axesOfAlchemy(GridSize size)
 
 CandidateAxes slices(GridSize size, const std::vector<int>& counts, const std::vector<int>& steps)
 {
-	CandidateAxes axes;
-	axes.counts = counts;
-	axes.filters = filtersFor(size);
-	axes.half = kBothResolutions;
+	CandidateAxes axes{.counts = counts, .filters = filtersFor(size), .half = kBothResolutions};
 	axes.forms.clear();
 	for (const int a_side : steps)
 	{

@@ -41,12 +41,7 @@ using shade_kernels::Kernels;
 // docs/reference/comparison.md; as published, and with the same fit to rays as our methods.
 std::vector<CandidateAxes> publishedAxes(SampleSource source, const FilterChoice& filter, const std::vector<int>& counts)
 {
-	CandidateAxes axes;
-	axes.origin = Origin::paper;
-	axes.counts = counts;
-	axes.sources = {source};
-	axes.filters = {filter};
-	axes.rays = {false, true};
+	CandidateAxes axes{.origin = Origin::paper, .counts = counts, .sources = {source}, .filters = {filter}, .rays = {false, true}};
 	return {axes};
 }
 

@@ -295,9 +295,7 @@ std::vector<FeatureRow> layerOptions()
 CandidateAxes layers(Origin origin, const std::vector<int>& counts, const std::vector<int>& cells,
 					 const std::vector<bool>& quadrants)
 {
-	CandidateAxes axes;
-	axes.origin = origin;
-	axes.counts = counts;
+	CandidateAxes axes{.origin = origin, .counts = counts};
 	axes.forms.clear();
 	for (const int cell_px : cells)
 	{

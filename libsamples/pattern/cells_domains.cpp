@@ -509,11 +509,8 @@ void addCell(Cells& cells, int index, const glm::dvec3& direction, const std::ve
 	const auto i = static_cast<std::size_t>(index);
 	if (reachesAround(direction, polygon))
 	{
-		const auto normalOf = [&](const ArcCorner& corner)
-		{
-			return glm::normalize(scaled[i] - scaled[static_cast<std::size_t>(corner.label)]);
-		};
-		area = turningArea(polygon, mapped(polygon, normalOf));
+		area = turningArea(polygon, mapped(polygon, [&](const ArcCorner& corner)
+										   { return glm::normalize(scaled[i] - scaled[static_cast<std::size_t>(corner.label)]); }));
 	}
 	cells.integrals[i] = std::max(kSphereDensity * area, 0.0);
 	cells.centroids[i] = cells.integrals[i] > kLeastCell ? moment / area : direction;

@@ -181,8 +181,7 @@ public:
 		: m_setup(setup), m_samples(samples), m_rows(rows)
 	{
 	}
-	PairSum(const PairSum&) = delete;
-	PairSum& operator=(const PairSum&) = delete;
+	PairSum& operator=(PairSum&&) = delete;
 	~PairSum()
 	{
 		addLines();

@@ -64,8 +64,7 @@ class StartProgress
 public:
 	// `steps` ≥ 1; further steps are not counted.
 	StartProgress(ProgressCounter& progress, std::size_t steps) : m_progress(progress), m_left(steps) {}
-	StartProgress(const StartProgress&) = delete;
-	StartProgress& operator=(const StartProgress&) = delete;
+	StartProgress& operator=(StartProgress&&) = delete;
 	~StartProgress()
 	{
 		try

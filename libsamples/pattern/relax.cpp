@@ -260,10 +260,7 @@ double relaxSphereEnergy(const Layout& layout, double exponent, Points& points, 
 		return logOf(energy) / exponent;
 	};
 	std::vector<double> x = layout.variables(points);
-	LbfgsSettings settings;
-	settings.max_iterations = 1000;
-	settings.relative_decrease = 1e-12;
-	settings.seen = seenVariables(layout, seen);
+	LbfgsSettings settings{.max_iterations = 1000, .relative_decrease = 1e-12, .seen = seenVariables(layout, seen)};
 	const double value = minimise(objective, x, settings);
 	layout.points(x, all);
 	points = all;
@@ -392,9 +389,7 @@ double descend(const Recipe& recipe, const Layout& layout, Points& points, Minim
 		return value;
 	};
 	std::vector<double> x = layout.variables(points);
-	LbfgsSettings settings;
-	settings.max_iterations = iterationLimit(recipe.count);
-	settings.seen = seenVariables(layout, seen);
+	LbfgsSettings settings{.max_iterations = iterationLimit(recipe.count), .seen = seenVariables(layout, seen)};
 	const double value = minimise(objective, x, settings);
 	const bool allowed = layout.points(x, points);
 	assert(allowed);

@@ -12,7 +12,6 @@
 #include "pattern/tile_parts.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <limits>
 #include <optional>

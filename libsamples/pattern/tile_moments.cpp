@@ -71,9 +71,7 @@ std::vector<std::array<std::size_t, 2>> parities(const std::vector<std::array<in
 // Points that cover the domain up to its rim, symmetric in every axis.
 std::vector<glm::dvec3> mirroredNodes(Domain domain)
 {
-	Recipe recipe;
-	recipe.domain = domain;
-	recipe.count = kNodes;
+	Recipe recipe{.domain = domain, .count = kNodes};
 	std::vector<glm::dvec3> nodes = isPlanar(domain) ? std::vector<glm::dvec3>{} : haltonPoints(Layout(recipe));
 	for (int i = 0; i < kNodes && isPlanar(domain); ++i)
 	{

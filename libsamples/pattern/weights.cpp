@@ -122,8 +122,7 @@ struct Residual
 
 Residual residualOf(Domain domain, std::span<const glm::dvec3> points, const std::vector<double>& powers)
 {
-	Residual residual;
-	residual.cells = exactCells(domain, points, powers);
+	Residual residual{.cells = exactCells(domain, points, powers)};
 	const auto count = static_cast<double>(points.size());
 	residual.least = count;
 	for (const double integral : residual.cells.integrals)

@@ -30,8 +30,7 @@ constexpr std::array<std::string_view, 3> kColour{"DiffuseColor", "Maya|baseColo
 // The file's axes and unit: UnitScaleFactor centimetres.
 FileAxes axesOf(const FbxObjects& objects)
 {
-	FileAxes axes;
-	axes.unit_m = 0.01;
+	FileAxes axes{.unit_m = 0.01};
 	FbxObject settings;
 	if (const FbxNode* const node = objects.file.root.child("GlobalSettings"))
 	{
@@ -370,9 +369,7 @@ private:
 		const double height = number("AspectHeight", 1.0);
 		const double aspect = width > 0.0 && height > 0.0 ? width / height : 1.0;
 		const double unit = glm::length(glm::dvec3(m_world_from_file[0]));
-		Lens lens;
-		lens.near_m = unit * number("NearPlane", 10.0);
-		lens.far_m = unit * number("FarPlane", 4000.0);
+		Lens lens{.near_m = unit * number("NearPlane", 10.0), .far_m = unit * number("FarPlane", 4000.0)};
 		const double mode = number("ApertureMode", 1.0); // 0: both angles, 1: horizontal angle, 2: vertical angle, 3: focal length
 		const double vertical = number(mode == 0.0 ? "FieldOfViewY" : "FieldOfView", 0.0);
 		const double horizontal = number(mode == 0.0 ? "FieldOfViewX" : "FieldOfView", 0.0);
@@ -407,11 +404,9 @@ private:
 				corners += indices->values.size() == 1 ? indices->values.front().count : indices->values.size();
 			}
 		}
-		if (corners > 3 * uint64_t{kMaxTriangles})
-		{
-			refuseInput(m_file.path, std::to_string(corners) + " corners of polygons, counting every instance",
-						"at most " + std::to_string(3 * kMaxTriangles));
-		}
+		refuseInputIf(corners > 3 * uint64_t{kMaxTriangles}, m_file.path,
+					  std::to_string(corners) + " corners of polygons, counting every instance",
+					  "at most " + std::to_string(3 * kMaxTriangles));
 	}
 
 	void send(const Instance& instance)

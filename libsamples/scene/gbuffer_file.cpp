@@ -16,7 +16,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <string_view>
 
 namespace nook
 {
@@ -535,14 +534,7 @@ GBuffer gbufferFrom(Image image, const std::string& path, const GBufferImport& i
 			gbuffer.depth_error_m.push_back(std::isfinite(gbuffer.depth[i]) ? depth.errorOf(i, gbuffer.depth[i]) : 0.0F);
 		}
 	}
-	if (import.normals_from_depth)
-	{
-		normalsFromDepth(gbuffer);
-	}
-	else
-	{
-		readNormals(gbuffer, file, import, projector);
-	}
+	import.normals_from_depth ? normalsFromDepth(gbuffer) : readNormals(gbuffer, file, import, projector);
 	return gbuffer;
 }
 

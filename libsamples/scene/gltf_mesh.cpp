@@ -120,10 +120,8 @@ private:
 		}
 		failIf(found->count() != primitive.positions->count(), attributes, name, std::to_string(found->count()) + " values",
 			   std::to_string(primitive.positions->count()) + ", as many as positions");
-		if (const std::string held = accessorOf(attributes, name).text("type"); !type.empty() && held != type)
-		{
-			attributes.fail(name, "an accessor of type " + held, std::string(type));
-		}
+		const std::string held = accessorOf(attributes, name).text("type");
+		failIf(!type.empty() && held != type, attributes, name, "an accessor of type " + held, std::string(type));
 		return found;
 	}
 

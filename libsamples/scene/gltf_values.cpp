@@ -46,11 +46,8 @@ std::optional<GltfValues> attributeOf(GltfFile& file, const JsonValue& attribute
 	failIf(accessor.text("type") != type || !(component == 5126 || (wide && whole)), attributes, name,
 		   "an accessor of type " + accessor.text("type") + " of " + std::to_string(component),
 		   std::string(type) + (wide ? " of 5126, or of 5120 or 5122 normalised" : " of 5126"));
-	if (!accessor.has("bufferView"))
-	{
-		attributes.fail(name, "an accessor that no buffer holds",
-						"one of a bufferView"); // a count alone could request any amount of memory
-	}
+	failIf(!accessor.has("bufferView"), attributes, name, "an accessor that no buffer holds",
+		   "one of a bufferView"); // a count alone could request any amount of memory
 	return GltfValues(file, *index);
 }
 

@@ -141,10 +141,8 @@ std::vector<uint32_t> cleanAgain(Level& again, const std::string& name, const Lo
 	std::vector<uint32_t> before;
 	ignoreParts(again, settings);
 	cleanLevel(again, silent(run), &before);
-	if (again.positions != level.positions) // triangles may be flipped by now (bake/bake.h)
-	{
-		refuseInput(name, "other vertices when reading it again", "an unchanged file");
-	}
+	// Triangles may be flipped by now (bake/bake.h).
+	refuseInputIf(again.positions != level.positions, name, "other vertices when reading it again", "an unchanged file");
 	return before;
 }
 
@@ -396,6 +394,31 @@ std::string keyOf(std::span<const PlacedLevel> levels, const LoadSettings& setti
 	return key.text();
 }
 
+// Adds the textures that bakeInto() gave materials.
+void addPages(const std::string& path, const Level& level, const RunSettings& run, BakedValues& baked)
+{
+	GltfFile file = openGltf(path);
+	for (const Material& material : level.material_list)
+	{
+		const auto image = static_cast<std::size_t>(std::max(material.occlusion, 0));
+		const JsonValue item = material.occlusion < 0 ? file.root() : file.root().item("images", image);
+		if (item.text("name") != kBakedImage || !item.has("bufferView") ||
+			(image < baked.pages.size() && baked.pages[image].width_px > 0))
+		{
+			continue;
+		}
+		const std::string bytes(viewBytes(file, static_cast<std::size_t>(item.at("bufferView").whole(UINT32_MAX))));
+		std::vector<AlphaImage> read = decodeAlphas({{"visibility.png", "", bytes, MaskChannel::red}}, path);
+		baked.pages.resize(std::max(baked.pages.size(), image + 1));
+		baked.pages[image] = {"", read[0].width_px, read[0].height_px, Wrap::clamp, Wrap::clamp, std::move(read[0].alpha)};
+	}
+	baked.uvs = secondSet(path, {}, level, kOcclusionSet, run);
+	if (baked.uvs.empty())
+	{
+		baked.pages.clear();
+	}
+}
+
 } // namespace
 
 bool isLevelName(const std::string& name)
@@ -525,36 +548,6 @@ std::vector<GltfPlace> loadPlaces(const std::string& name, const LoadSettings& s
 	}
 	return std::move(source.places);
 }
-
-namespace
-{
-
-// Adds the textures that bakeInto() gave materials.
-void addPages(const std::string& path, const Level& level, const RunSettings& run, BakedValues& baked)
-{
-	GltfFile file = openGltf(path);
-	for (const Material& material : level.material_list)
-	{
-		const auto image = static_cast<std::size_t>(std::max(material.occlusion, 0));
-		const JsonValue item = material.occlusion < 0 ? file.root() : file.root().item("images", image);
-		if (item.text("name") != kBakedImage || !item.has("bufferView") ||
-			(image < baked.pages.size() && baked.pages[image].width_px > 0))
-		{
-			continue;
-		}
-		const std::string bytes(viewBytes(file, static_cast<std::size_t>(item.at("bufferView").whole(UINT32_MAX))));
-		std::vector<AlphaImage> read = decodeAlphas({{"visibility.png", "", bytes, MaskChannel::red}}, path);
-		baked.pages.resize(std::max(baked.pages.size(), image + 1));
-		baked.pages[image] = {"", read[0].width_px, read[0].height_px, Wrap::clamp, Wrap::clamp, std::move(read[0].alpha)};
-	}
-	baked.uvs = secondSet(path, {}, level, kOcclusionSet, run);
-	if (baked.uvs.empty())
-	{
-		baked.pages.clear();
-	}
-}
-
-} // namespace
 
 BakedValues loadBakedValues(const std::string& path, const Level& level, const RunSettings& run)
 {

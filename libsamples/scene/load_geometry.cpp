@@ -47,9 +47,7 @@ public:
 		m_level.source_count = sources == 0 ? m_level.positions.size() : sources;
 		for (const std::string_view id : kSentFindings)
 		{
-			Tally tally;
-			tally.count = m_from.value<uint64_t>();
-			tally.first = m_from.text();
+			Tally tally{.count = m_from.value<uint64_t>(), .first = m_from.text()};
 			report(m_source.findings, id, tally);
 		}
 		report(m_source.findings, "missing-uvs", m_no_uvs);

@@ -51,11 +51,9 @@ std::string besideLevel(const std::string& level_path, std::string name)
 
 void checkCounts(const std::string& where, uint64_t triangles, uint64_t vertices, const std::string& counted)
 {
-	if (triangles > kMaxTriangles || vertices > 3 * uint64_t{kMaxTriangles})
-	{
-		refuseInput(where, std::to_string(triangles) + " triangles of " + std::to_string(vertices) + " vertices" + counted,
-					"at most " + std::to_string(kMaxTriangles));
-	}
+	refuseInputIf(triangles > kMaxTriangles || vertices > 3 * uint64_t{kMaxTriangles}, where,
+				  std::to_string(triangles) + " triangles of " + std::to_string(vertices) + " vertices" + counted,
+				  "at most " + std::to_string(kMaxTriangles));
 }
 
 std::string endingOf(const std::string& path)

@@ -56,10 +56,7 @@ std::vector<glm::dvec3> lattice(int count)
 // Unit vectors in the disk, in order of radius.
 std::vector<glm::dvec3> azimuths(int count)
 {
-	Recipe recipe;
-	recipe.domain = Domain::hemisphere;
-	recipe.method = Method::vogel;
-	recipe.count = count;
+	Recipe recipe{.domain = Domain::hemisphere, .count = count, .method = Method::vogel};
 	std::vector<glm::dvec3> points = vogelPoints(Layout(recipe));
 	std::transform(points.begin(), points.end(), points.begin(),
 				   [](const glm::dvec3& p) { return glm::normalize(glm::dvec3(p.x, p.y, 0.0)); });

@@ -121,11 +121,8 @@ private:
 // use(sides) for each part (parts[triangle]) of an edge's sides; triangles of a part are consecutive.
 template <class Use> void eachPart(std::span<const HalfEdge> edge, std::span<const uint32_t> parts, const Use& use)
 {
-	const auto same = [&parts](const HalfEdge& a, const HalfEdge& b)
-	{
-		return parts[a.triangle()] == parts[b.triangle()];
-	};
-	eachRun(edge, same, use);
+	eachRun(
+		edge, [&parts](const HalfEdge& a, const HalfEdge& b) { return parts[a.triangle()] == parts[b.triangle()]; }, use);
 }
 
 // Number of defective edges, and the lowest triangle at one.

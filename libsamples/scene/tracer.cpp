@@ -18,7 +18,6 @@
 #include "core/text.h"
 #include "core/words.h"
 #include "scene/camera_choice.h"
-#include "scene/embree.h"
 #include "scene/ray_triangle.h"
 
 #include <glm/common.hpp>
@@ -31,6 +30,15 @@
 #include <cstdlib>
 #include <limits>
 #include <string_view>
+
+// Embree 4, or 3 with the names of 4.
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+using RTCRayQueryContext = RTCIntersectContext;
+#define rtcInitRayQueryContext rtcInitIntersectContext
+#endif
 
 namespace nook
 {
@@ -79,50 +87,6 @@ inline constexpr unsigned kOpaqueId = 0;
 inline constexpr unsigned kMaskedId = 1;
 
 } // namespace tracing
-
-struct Tracer::Data
-{
-	const Level& level;
-	glm::dvec3 centre{0.0};
-	double error = 0.0;
-	Bounds bounds; // of the level
-	tracing::Part opaque;
-	tracing::Part masked;
-	RTCDevice device = nullptr;
-	RTCScene scene = nullptr;
-
-	explicit Data(const Level& of) : level(of) {}
-	Data(const Data&) = delete;
-	Data& operator=(const Data&) = delete;
-	~Data()
-	{
-		rtcReleaseScene(scene);
-		rtcReleaseDevice(device);
-	}
-
-	void fill(int threads, const Vicinity* near, std::span<const uint8_t> occluders);
-	void attach(tracing::Part& part, unsigned id);
-	void check(const std::string& what) const;
-	glm::vec3 local(glm::dvec3 position) const
-	{
-		return glm::vec3(position - centre);
-	}
-	RTCRay rayOf(glm::dvec3 origin, glm::dvec3 direction, double reach) const;
-	bool isSolid(uint32_t triangle, double b, double c) const;
-	RayHit refine(glm::dvec3 origin, glm::dvec3 direction, const RTCRayHit& found) const;
-	void place(tracing::Part& part, int threads) const;
-	double slackAt(double t) const // possible error of t in 32 bits, on a surface that is not at a grazing angle
-	{
-		return 1e-5 * t + 8.0 * error;
-	}
-	bool meets(const tracing::Bundle& bundle, const tracing::Part& part, unsigned primitive, unsigned id, double& t) const;
-	bool isNearer(const tracing::Bundle& bundle, tracing::Met& met, const tracing::Met& other, unsigned id) const;
-	template <bool is_masked> static void filter(const RTCFilterFunctionNArguments* arguments);
-	template <bool is_masked> static bool isMet(const RTCFilterFunctionNArguments* arguments, unsigned n, unsigned i);
-	std::span<const tracing::Met> nearestOf(glm::dvec3 origin, const Directions& directions, float reach) const;
-	template <class Ray>
-	tracing::Bundle aim(std::vector<Ray>& rays, glm::dvec3 origin, const Directions& directions, float reach) const;
-};
 
 namespace
 {
@@ -205,6 +169,24 @@ bool collect(RTCPointQueryFunctionArguments* arguments)
 	return false;
 }
 
+// It selects code by the processor; nook's output does not depend on the choice. The environment variable NOOK_TEST_ISA (sse2,
+// sse4.2, avx, avx2, avx512) forces an instruction set, so that a test can check that all give the same result. Throws Error: usage
+// for another name, runtime if the processor lacks it.
+RTCDevice newEmbreeDevice()
+{
+	const char* const isa = std::getenv("NOOK_TEST_ISA");
+	// Embree itself ignores unknown names.
+	constexpr std::array<std::string_view, 5> kSets{"sse2", "sse4.2", "avx", "avx2", "avx512"};
+	if (isa != nullptr && std::find(kSets.begin(), kSets.end(), isa) == kSets.end())
+	{
+		refuseInput("NOOK_TEST_ISA", "'" + oneLine(isa) + "'", "sse2, sse4.2, avx, avx2 or avx512", ExitCode::usage);
+	}
+	RTCDevice device = rtcNewDevice(isa == nullptr ? "" : ("isa=" + std::string(isa)).c_str());
+	refuseInputIf(device == nullptr, isa == nullptr ? "Embree" : "NOOK_TEST_ISA", "no device",
+				  "instructions that Embree and this processor have", ExitCode::runtime);
+	return device;
+}
+
 constexpr double kCellsOfReach = 4.0; // smaller cells are tighter, but there are more of them
 constexpr double kMostCells = 1 << 18;
 
@@ -218,183 +200,331 @@ double errorOfRays(const Bounds& bounds)
 	return std::sqrt(3.0) * 23.0 * kUnitRoundoff * std::max({half.x, half.y, half.z});
 }
 
-bool Tracer::Data::isSolid(uint32_t triangle, double b, double c) const
+struct Tracer::Data
 {
-	const Material& material = level.material_list[level.materials[triangle]];
-	if (isOpaque(material))
-	{
-		return true;
-	}
-	const glm::uvec3 corner = level.triangles[triangle];
-	const glm::dvec2 uv = (1.0 - b - c) * glm::dvec2(level.uvs[corner[0]]) + b * glm::dvec2(level.uvs[corner[1]]) +
-						  c * glm::dvec2(level.uvs[corner[2]]);
-	return isSolidAt(level, material, uv);
-}
+	const Level& level;
+	glm::dvec3 centre{0.0};
+	double error = 0.0;
+	Bounds bounds; // of the level
+	tracing::Part opaque;
+	tracing::Part masked;
+	RTCDevice device = nullptr;
+	RTCScene scene = nullptr;
 
-// Tests whether a ray hits a triangle of a part within its reach, and at which t.
-bool Tracer::Data::meets(const tracing::Bundle& bundle, const tracing::Part& part, unsigned primitive, unsigned id, double& t) const
-{
-	const uint32_t triangle = part.triangles[primitive];
-	const PlaneHit hit = meet(level, triangle, bundle.origin, bundle.directionOf(id));
-	t = hit.t;
-	return isInside(hit) && hit.t <= bundle.reach && (&part == &opaque || isSolid(triangle, hit.b, hit.c));
-}
+	explicit Data(const Level& of) : level(of) {}
+	Data& operator=(Data&&) = delete;
+	~Data()
+	{
+		rtcReleaseScene(scene);
+		rtcReleaseDevice(device);
+	}
 
-// True if another triangle is nearer than the current hit; in double if 32 bits are ambiguous.
-bool Tracer::Data::isNearer(const tracing::Bundle& bundle, tracing::Met& met, const tracing::Met& other, unsigned id) const
-{
-	if (!met.hit || other.t < met.t - slackAt(met.t))
+	glm::vec3 local(glm::dvec3 position) const
 	{
-		return true;
+		return glm::vec3(position - centre);
 	}
-	if (other.t > met.t + slackAt(met.t))
+	double slackAt(double t) const // possible error of t in 32 bits, on a surface that is not at a grazing angle
 	{
-		return false;
+		return 1e-5 * t + 8.0 * error;
 	}
-	const auto exactly = [&](tracing::Met& one)
+
+	bool isSolid(uint32_t triangle, double b, double c) const
 	{
-		if (!one.exact)
+		const Material& material = level.material_list[level.materials[triangle]];
+		if (isOpaque(material))
 		{
-			meets(bundle, one.masked ? masked : opaque, one.primitive, id, one.t);
-			one.exact = true;
+			return true;
 		}
-	};
-	tracing::Met exact = other;
-	exactly(met);
-	exactly(exact);
-	const auto triangleOf = [&](const tracing::Met& one)
-	{
-		return (one.masked ? masked : opaque).triangles[one.primitive];
-	};
-	return exact.t < met.t || (exact.t == met.t && triangleOf(exact) < triangleOf(met));
-}
+		const glm::uvec3 corner = level.triangles[triangle];
+		const glm::dvec2 uv = (1.0 - b - c) * glm::dvec2(level.uvs[corner[0]]) + b * glm::dvec2(level.uvs[corner[1]]) +
+							  c * glm::dvec2(level.uvs[corner[2]]);
+		return isSolidAt(level, material, uv);
+	}
 
-// Embree's filter function: accepts only hits that lie on the level's triangles and are solid in their masks.
-template <bool is_masked> void Tracer::Data::filter(const RTCFilterFunctionNArguments* arguments)
-{
-	const unsigned n = arguments->N;
-	for (unsigned i = 0; i < n; ++i)
+	// Tests whether a ray hits a triangle of a part within its reach, and at which t.
+	bool meets(const tracing::Bundle& bundle, const tracing::Part& part, unsigned primitive, unsigned id, double& t) const
 	{
-		// Streams of single rays always have n = 1; knowing that avoids the packet code.
-		if (arguments->valid[i] == -1 && !(n == 1 ? isMet<is_masked>(arguments, 1, 0) : isMet<is_masked>(arguments, n, i)))
+		const uint32_t triangle = part.triangles[primitive];
+		const PlaneHit hit = meet(level, triangle, bundle.origin, bundle.directionOf(id));
+		t = hit.t;
+		return isInside(hit) && hit.t <= bundle.reach && (&part == &opaque || isSolid(triangle, hit.b, hit.c));
+	}
+
+	// True if another triangle is nearer than the current hit; in double if 32 bits are ambiguous.
+	bool isNearer(const tracing::Bundle& bundle, tracing::Met& met, const tracing::Met& other, unsigned id) const
+	{
+		if (!met.hit || other.t < met.t - slackAt(met.t))
 		{
-			arguments->valid[i] = 0;
+			return true;
 		}
-	}
-}
-
-template <bool is_masked> bool Tracer::Data::isMet(const RTCFilterFunctionNArguments* arguments, unsigned n, unsigned i)
-{
-	const Data& data = *static_cast<const Data*>(arguments->geometryUserPtr);
-	const tracing::Bundle& bundle = *reinterpret_cast<const tracing::Bundle*>(arguments->context);
-	const tracing::Part& part = is_masked ? data.masked : data.opaque;
-	if (is_masked && bundle.passes_masks)
-	{
-		return false;
-	}
-	const unsigned primitive = RTCHitN_primID(arguments->hit, n, i);
-	const float b = RTCHitN_u(arguments->hit, n, i);
-	const float c = RTCHitN_v(arguments->hit, n, i);
-	float& tfar = RTCRayN_tfar(arguments->ray, n, i);
-	const bool is_sure = !is_masked && std::min({b, c, 1.0F - b - c}) > part.margins[primitive] && tfar < bundle.surely;
-	if (is_sure && bundle.met.empty())
-	{
-		return true;
-	}
-	const unsigned id = RTCRayN_id(arguments->ray, n, i);
-	tracing::Met found{static_cast<double>(tfar), primitive, true, is_masked, !is_sure};
-	if (!is_sure && !data.meets(bundle, part, primitive, id, found.t))
-	{
-		return false;
-	}
-	if (bundle.met.empty())
-	{
-		return true;
-	}
-	tracing::Met& met = bundle.met[id];
-	if (!data.isNearer(bundle, met, found, id))
-	{
-		return false;
-	}
-	met = found;
-	tfar += static_cast<float>(data.slackAt(met.t)); // also accepts what is just behind by 32 bits
-	return true;
-}
-
-void Tracer::Data::check(const std::string& what) const
-{
-	const RTCError code = rtcGetDeviceError(device);
-	refuseIf(
-		code != RTC_ERROR_NONE,
-		level.name + ": " + what + ": Embree " +
-			(code == RTC_ERROR_OUT_OF_MEMORY ? std::string("found no memory left") : "failed with code " + std::to_string(code)) +
-			", expected a tree of " + std::to_string(level.triangles.size()) + " triangles",
-		ExitCode::runtime);
-}
-
-void Tracer::Data::fill(int threads, const Vicinity* near, std::span<const uint8_t> occluders)
-{
-	bounds = boundsOf(level);
-	centre = 0.5 * (bounds.least + bounds.most);
-	error = errorOfRays(bounds);
-	opaque.triangles.reserve(level.triangles.size());
-	for (std::size_t i = 0; i < level.triangles.size(); ++i)
-	{
-		const Material& material = level.material_list[level.materials[i]];
-		// Otherwise it is entirely transparent, such as clear glass, or out of reach of all rays.
-		if (material.coverage > 0.0 && (near == nullptr || near->touches(boundsOf(level, i))) &&
-			(occluders.empty() || occluders[i] != 0))
+		if (other.t > met.t + slackAt(met.t))
 		{
-			(isOpaque(material) ? opaque : masked).triangles.push_back(static_cast<uint32_t>(i));
+			return false;
+		}
+		const auto exactly = [&](tracing::Met& one)
+		{
+			if (!one.exact)
+			{
+				meets(bundle, one.masked ? masked : opaque, one.primitive, id, one.t);
+				one.exact = true;
+			}
+		};
+		tracing::Met exact = other;
+		exactly(met);
+		exactly(exact);
+		const auto triangleOf = [&](const tracing::Met& one)
+		{
+			return (one.masked ? masked : opaque).triangles[one.primitive];
+		};
+		return exact.t < met.t || (exact.t == met.t && triangleOf(exact) < triangleOf(met));
+	}
+
+	// Embree's filter function: accepts only hits that lie on the level's triangles and are solid in their masks.
+	template <bool is_masked> static void filter(const RTCFilterFunctionNArguments* arguments)
+	{
+		const unsigned n = arguments->N;
+		for (unsigned i = 0; i < n; ++i)
+		{
+			// Streams of single rays always have n = 1; knowing that avoids the packet code.
+			if (arguments->valid[i] == -1 && !(n == 1 ? isMet<is_masked>(arguments, 1, 0) : isMet<is_masked>(arguments, n, i)))
+			{
+				arguments->valid[i] = 0;
+			}
 		}
 	}
-	place(opaque, threads);
-	place(masked, threads);
-}
 
-void Tracer::Data::place(tracing::Part& part, int threads) const
-{
-	const std::size_t count = part.triangles.size();
-	part.corners.resize(count);
-	part.vertices.resize(9 * count + 1);
-	part.margins.resize(count);
-	parallelForAll(count, threads,
-				   [&](std::size_t i)
-				   {
-					   // Along a surface rounding moves less than through it: at most 20u·R, from the vertices, the origin and two
-					   // products. Enlarging by less than a ray's origin is lifted keeps the origin out of these boxes, which would
-					   // take half of the time.
-					   const LargerTriangle larger = enlarge(level, part.triangles[i], 0.5 * error);
-					   float* to = part.vertices.data() + 9 * i;
-					   for (const glm::dvec3& corner : larger.corners)
+	template <bool is_masked> static bool isMet(const RTCFilterFunctionNArguments* arguments, unsigned n, unsigned i)
+	{
+		const Data& data = *static_cast<const Data*>(arguments->geometryUserPtr);
+		const tracing::Bundle& bundle = *reinterpret_cast<const tracing::Bundle*>(arguments->context);
+		const tracing::Part& part = is_masked ? data.masked : data.opaque;
+		if (is_masked && bundle.passes_masks)
+		{
+			return false;
+		}
+		const unsigned primitive = RTCHitN_primID(arguments->hit, n, i);
+		const float b = RTCHitN_u(arguments->hit, n, i);
+		const float c = RTCHitN_v(arguments->hit, n, i);
+		float& tfar = RTCRayN_tfar(arguments->ray, n, i);
+		const bool is_sure = !is_masked && std::min({b, c, 1.0F - b - c}) > part.margins[primitive] && tfar < bundle.surely;
+		if (is_sure && bundle.met.empty())
+		{
+			return true;
+		}
+		const unsigned id = RTCRayN_id(arguments->ray, n, i);
+		tracing::Met found{static_cast<double>(tfar), primitive, true, is_masked, !is_sure};
+		if (!is_sure && !data.meets(bundle, part, primitive, id, found.t))
+		{
+			return false;
+		}
+		if (bundle.met.empty())
+		{
+			return true;
+		}
+		tracing::Met& met = bundle.met[id];
+		if (!data.isNearer(bundle, met, found, id))
+		{
+			return false;
+		}
+		met = found;
+		tfar += static_cast<float>(data.slackAt(met.t)); // also accepts what is just behind by 32 bits
+		return true;
+	}
+
+	void check(const std::string& what) const
+	{
+		const RTCError code = rtcGetDeviceError(device);
+		refuseIf(code != RTC_ERROR_NONE,
+				 level.name + ": " + what + ": Embree " +
+					 (code == RTC_ERROR_OUT_OF_MEMORY ? std::string("found no memory left")
+													  : "failed with code " + std::to_string(code)) +
+					 ", expected a tree of " + std::to_string(level.triangles.size()) + " triangles",
+				 ExitCode::runtime);
+	}
+
+	void fill(int threads, const Vicinity* near, std::span<const uint8_t> occluders)
+	{
+		bounds = boundsOf(level);
+		centre = 0.5 * (bounds.least + bounds.most);
+		error = errorOfRays(bounds);
+		opaque.triangles.reserve(level.triangles.size());
+		for (std::size_t i = 0; i < level.triangles.size(); ++i)
+		{
+			const Material& material = level.material_list[level.materials[i]];
+			// Otherwise it is entirely transparent, such as clear glass, or out of reach of all rays.
+			if (material.coverage > 0.0 && (near == nullptr || near->touches(boundsOf(level, i))) &&
+				(occluders.empty() || occluders[i] != 0))
+			{
+				(isOpaque(material) ? opaque : masked).triangles.push_back(static_cast<uint32_t>(i));
+			}
+		}
+		place(opaque, threads);
+		place(masked, threads);
+	}
+
+	void place(tracing::Part& part, int threads) const
+	{
+		const std::size_t count = part.triangles.size();
+		part.corners.resize(count);
+		part.vertices.resize(9 * count + 1);
+		part.margins.resize(count);
+		parallelForAll(count, threads,
+					   [&](std::size_t i)
 					   {
-						   const glm::vec3 p = local(corner);
-						   to = std::copy_n(std::array{p.x, p.y, p.z}.data(), 3, to);
-					   }
-					   const auto first = static_cast<uint32_t>(3 * i);
-					   part.corners[i] = {first, first + 1, first + 2};
-					   part.margins[i] = static_cast<float>(larger.margin);
-				   });
-}
-
-void Tracer::Data::attach(tracing::Part& part, unsigned id)
-{
-	if (part.corners.empty())
-	{
-		return;
+						   // Along a surface rounding moves less than through it: at most 20u·R, from the vertices, the origin and
+						   // two products. Enlarging by less than a ray's origin is lifted keeps the origin out of these boxes,
+						   // which would take half of the time.
+						   const LargerTriangle larger = enlarge(level, part.triangles[i], 0.5 * error);
+						   float* to = part.vertices.data() + 9 * i;
+						   for (const glm::dvec3& corner : larger.corners)
+						   {
+							   const glm::vec3 p = local(corner);
+							   to = std::copy_n(std::array{p.x, p.y, p.z}.data(), 3, to);
+						   }
+						   const auto first = static_cast<uint32_t>(3 * i);
+						   part.corners[i] = {first, first + 1, first + 2};
+						   part.margins[i] = static_cast<float>(larger.margin);
+					   });
 	}
-	RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-	rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, part.vertices.data(), 0, 3 * sizeof(float),
-							   3 * part.corners.size());
-	rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, part.corners.data(), 0, sizeof(glm::uvec3),
-							   part.corners.size());
-	rtcSetGeometryUserData(geometry, this);
-	rtcSetGeometryIntersectFilterFunction(geometry, id == tracing::kMaskedId ? filter<true> : filter<false>);
-	rtcSetGeometryOccludedFilterFunction(geometry, id == tracing::kMaskedId ? filter<true> : filter<false>);
-	rtcCommitGeometry(geometry);
-	rtcAttachGeometryByID(scene, geometry, id);
-	rtcReleaseGeometry(geometry);
-}
+
+	void attach(tracing::Part& part, unsigned id)
+	{
+		if (part.corners.empty())
+		{
+			return;
+		}
+		RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+		rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, part.vertices.data(), 0,
+								   3 * sizeof(float), 3 * part.corners.size());
+		rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, part.corners.data(), 0, sizeof(glm::uvec3),
+								   part.corners.size());
+		rtcSetGeometryUserData(geometry, this);
+		rtcSetGeometryIntersectFilterFunction(geometry, id == tracing::kMaskedId ? filter<true> : filter<false>);
+		rtcSetGeometryOccludedFilterFunction(geometry, id == tracing::kMaskedId ? filter<true> : filter<false>);
+		rtcCommitGeometry(geometry);
+		rtcAttachGeometryByID(scene, geometry, id);
+		rtcReleaseGeometry(geometry);
+	}
+
+	RTCRay rayOf(glm::dvec3 origin, glm::dvec3 direction, double reach) const
+	{
+		const glm::vec3 from = local(origin);
+		const glm::vec3 way(direction);
+		RTCRay ray{};
+		ray.org_x = from.x;
+		ray.org_y = from.y;
+		ray.org_z = from.z;
+		ray.dir_x = way.x;
+		ray.dir_y = way.y;
+		ray.dir_z = way.z;
+		ray.tfar = static_cast<float>(reach);
+		ray.mask = ~0U;
+		return ray;
+	}
+
+	// Among surfaces at the same distance Embree returns whichever its tree visits first. So all triangles nearby are intersected
+	// in double.
+	RayHit refine(glm::dvec3 origin, glm::dvec3 direction, const RTCRayHit& found) const
+	{
+		const uint32_t first = (found.hit.geomID == tracing::kOpaqueId ? opaque : masked).triangles[found.hit.primID];
+		const PlaneHit of_first = meet(level, first, origin, direction);
+		const double t = of_first.t;
+		const double tolerance_m = 2.0 * error + 8.0 * kUnitRoundoff * t * glm::length(direction);
+		Nearby nearby{&opaque.triangles, &masked.triangles, {}};
+		RTCPointQueryContext context;
+		rtcInitPointQueryContext(&context);
+		const glm::vec3 at = local(origin + t * direction);
+		RTCPointQuery query{at.x, at.y, at.z, 0.0F, static_cast<float>(tolerance_m)};
+		rtcPointQuery(scene, &query, &context, collect, &nearby);
+
+		RayHit best;
+		RayHit next_best;
+		double least_beyond = std::numeric_limits<double>::infinity();
+		for (const uint32_t triangle : nearby.triangles)
+		{
+			const PlaneHit hit = meet(level, triangle, origin, direction);
+			const bool inside = hit.b >= 0.0 && hit.c >= 0.0 && hit.b + hit.c <= 1.0 && hit.t >= 0.0; // false for NaN
+			const bool here = std::fabs((hit.t - t) * hit.rise) <= 2.0 * tolerance_m;
+			if (inside && here && (!best.hit || hit.t < best.distance || (hit.t == best.distance && triangle < best.triangle)) &&
+				isSolid(triangle, hit.b, hit.c))
+			{
+				best = {true, hit.t, triangle, {hit.b, hit.c}, hit.rise < 0.0};
+			}
+			const double beyond = std::max({-hit.b, -hit.c, hit.b + hit.c - 1.0});
+			if (here && (beyond < least_beyond || (beyond == least_beyond && triangle < next_best.triangle)))
+			{
+				least_beyond = beyond;
+				const double b = std::clamp(hit.b, 0.0, 1.0);
+				next_best = {true, hit.t, triangle, {b, std::clamp(hit.c, 0.0, 1.0 - b)}, hit.rise < 0.0};
+			}
+		}
+		if (best.hit)
+		{
+			return best;
+		}
+		if (next_best.hit)
+		{
+			return next_best; // between two triangles, within double rounding: take the one missed by least
+		}
+		const double b = std::clamp(of_first.b, 0.0, 1.0);
+		return {true, t, first, {b, std::clamp(of_first.c, 0.0, 1.0 - b)}, of_first.rise < 0.0};
+	}
+
+	// Fills in the rays, extended by how far rounding may move a surface at the end of the reach.
+	template <class Ray>
+	tracing::Bundle aim(std::vector<Ray>& rays, glm::dvec3 origin, const Directions& directions, float reach) const
+	{
+		if (rays.size() < directions.x.size())
+		{
+			rays.resize(directions.x.size());
+		}
+		const RTCRay ray = rayOf(origin, glm::dvec3(0.0), 0.0);
+		const auto slack_m = static_cast<float>(16.0 * error);
+		float most = 0.0F;
+		for (std::size_t i = 0; i < directions.x.size(); ++i)
+		{
+			const float x = directions.x[i];
+			const float y = directions.y[i];
+			const float z = directions.z[i];
+			const float no_shorter = std::fabs(x) + std::fabs(y) + std::fabs(z); // and at most 1.8 times as long
+			const float slack = 1e-5F * reach + slack_m / no_shorter;
+			most = std::max(most, slack);
+			RTCRay& aimed = withoutHit(rays[i]);
+			aimed = ray;
+			aimed.dir_x = x;
+			aimed.dir_y = y;
+			aimed.dir_z = z;
+			aimed.tfar = reach + slack;
+			aimed.id = static_cast<unsigned>(i);
+		}
+		tracing::Bundle bundle = bundleOf(origin, static_cast<double>(reach), reach - most);
+		bundle.directions = &directions;
+		return bundle;
+	}
+
+	// The first hit of each ray, all in double.
+	std::span<const tracing::Met> nearestOf(glm::dvec3 origin, const Directions& directions, float reach) const
+	{
+		std::vector<RTCRayHit>& rays = scratch<RTCRayHit>();
+		std::vector<tracing::Met>& met = scratch<tracing::Met>();
+		met.assign(directions.x.size(), {});
+		tracing::Bundle bundle = aim(rays, origin, directions, reach);
+		bundle.met = met;
+		trace(scene, bundle, std::span(rays.data(), met.size()));
+		for (std::size_t i = 0; i < met.size(); ++i)
+		{
+			if (met[i].hit)
+			{
+				const tracing::Part& part = met[i].masked ? masked : opaque;
+				const PlaneHit hit =
+					meet(level, part.triangles[met[i].primitive], origin, bundle.directionOf(static_cast<unsigned>(i)));
+				met[i].t = hit.t > 0.0 ? hit.t : 0.0; // rounding may place the ray's origin just behind the surface that it hit
+				met[i].front = hit.rise < 0.0;
+			}
+		}
+		return met;
+	}
+};
 
 Tracer::Tracer(const Level& level, const RunSettings& run, const Vicinity* near, std::span<const uint8_t> occluders)
 	: m_data(std::make_unique<Data>(level)), m_cameras(std::make_shared<CameraMemo>())
@@ -431,86 +561,7 @@ const Bounds& Tracer::bounds() const
 	return m_data->bounds;
 }
 
-RTCDevice newEmbreeDevice()
-{
-	const char* const isa = std::getenv("NOOK_TEST_ISA");
-	// Embree itself ignores unknown names.
-	constexpr std::array<std::string_view, 5> kSets{"sse2", "sse4.2", "avx", "avx2", "avx512"};
-	if (isa != nullptr && std::find(kSets.begin(), kSets.end(), isa) == kSets.end())
-	{
-		refuseInput("NOOK_TEST_ISA", "'" + oneLine(isa) + "'", "sse2, sse4.2, avx, avx2 or avx512", ExitCode::usage);
-	}
-	RTCDevice device = rtcNewDevice(isa == nullptr ? "" : ("isa=" + std::string(isa)).c_str());
-	refuseInputIf(device == nullptr, isa == nullptr ? "Embree" : "NOOK_TEST_ISA", "no device",
-				  "instructions that Embree and this processor have", ExitCode::runtime);
-	return device;
-}
-
 // The rays.
-
-RTCRay Tracer::Data::rayOf(glm::dvec3 origin, glm::dvec3 direction, double reach) const
-{
-	const glm::vec3 from = local(origin);
-	const glm::vec3 way(direction);
-	RTCRay ray{};
-	ray.org_x = from.x;
-	ray.org_y = from.y;
-	ray.org_z = from.z;
-	ray.dir_x = way.x;
-	ray.dir_y = way.y;
-	ray.dir_z = way.z;
-	ray.tfar = static_cast<float>(reach);
-	ray.mask = ~0U;
-	return ray;
-}
-
-// Among surfaces at the same distance Embree returns whichever its tree visits first. So all triangles nearby are intersected in
-// double.
-RayHit Tracer::Data::refine(glm::dvec3 origin, glm::dvec3 direction, const RTCRayHit& found) const
-{
-	const uint32_t first = (found.hit.geomID == tracing::kOpaqueId ? opaque : masked).triangles[found.hit.primID];
-	const PlaneHit of_first = meet(level, first, origin, direction);
-	const double t = of_first.t;
-	const double tolerance_m = 2.0 * error + 8.0 * kUnitRoundoff * t * glm::length(direction);
-	Nearby nearby{&opaque.triangles, &masked.triangles, {}};
-	RTCPointQueryContext context;
-	rtcInitPointQueryContext(&context);
-	const glm::vec3 at = local(origin + t * direction);
-	RTCPointQuery query{at.x, at.y, at.z, 0.0F, static_cast<float>(tolerance_m)};
-	rtcPointQuery(scene, &query, &context, collect, &nearby);
-
-	RayHit best;
-	RayHit next_best;
-	double least_beyond = std::numeric_limits<double>::infinity();
-	for (const uint32_t triangle : nearby.triangles)
-	{
-		const PlaneHit hit = meet(level, triangle, origin, direction);
-		const bool inside = hit.b >= 0.0 && hit.c >= 0.0 && hit.b + hit.c <= 1.0 && hit.t >= 0.0; // false for NaN
-		const bool here = std::fabs((hit.t - t) * hit.rise) <= 2.0 * tolerance_m;
-		if (inside && here && (!best.hit || hit.t < best.distance || (hit.t == best.distance && triangle < best.triangle)) &&
-			isSolid(triangle, hit.b, hit.c))
-		{
-			best = {true, hit.t, triangle, {hit.b, hit.c}, hit.rise < 0.0};
-		}
-		const double beyond = std::max({-hit.b, -hit.c, hit.b + hit.c - 1.0});
-		if (here && (beyond < least_beyond || (beyond == least_beyond && triangle < next_best.triangle)))
-		{
-			least_beyond = beyond;
-			const double b = std::clamp(hit.b, 0.0, 1.0);
-			next_best = {true, hit.t, triangle, {b, std::clamp(hit.c, 0.0, 1.0 - b)}, hit.rise < 0.0};
-		}
-	}
-	if (best.hit)
-	{
-		return best;
-	}
-	if (next_best.hit)
-	{
-		return next_best; // between two triangles, within double rounding: take the one missed by least
-	}
-	const double b = std::clamp(of_first.b, 0.0, 1.0);
-	return {true, t, first, {b, std::clamp(of_first.c, 0.0, 1.0 - b)}, of_first.rise < 0.0};
-}
 
 RayHit Tracer::nearest(glm::dvec3 origin, glm::dvec3 direction, double reach) const
 {
@@ -521,61 +572,6 @@ RayHit Tracer::nearest(glm::dvec3 origin, glm::dvec3 direction, double reach) co
 	bundle.direction = direction;
 	trace(m_data->scene, bundle, std::span(&ray, 1));
 	return ray.hit.geomID == RTC_INVALID_GEOMETRY_ID ? RayHit{} : m_data->refine(origin, direction, ray);
-}
-
-// Fills in the rays, extended by how far rounding may move a surface at the end of the reach.
-template <class Ray>
-tracing::Bundle Tracer::Data::aim(std::vector<Ray>& rays, glm::dvec3 origin, const Directions& directions, float reach) const
-{
-	if (rays.size() < directions.x.size())
-	{
-		rays.resize(directions.x.size());
-	}
-	const RTCRay ray = rayOf(origin, glm::dvec3(0.0), 0.0);
-	const auto slack_m = static_cast<float>(16.0 * error);
-	float most = 0.0F;
-	for (std::size_t i = 0; i < directions.x.size(); ++i)
-	{
-		const float x = directions.x[i];
-		const float y = directions.y[i];
-		const float z = directions.z[i];
-		const float no_shorter = std::fabs(x) + std::fabs(y) + std::fabs(z); // and at most 1.8 times as long
-		const float slack = 1e-5F * reach + slack_m / no_shorter;
-		most = std::max(most, slack);
-		RTCRay& aimed = withoutHit(rays[i]);
-		aimed = ray;
-		aimed.dir_x = x;
-		aimed.dir_y = y;
-		aimed.dir_z = z;
-		aimed.tfar = reach + slack;
-		aimed.id = static_cast<unsigned>(i);
-	}
-	tracing::Bundle bundle = bundleOf(origin, static_cast<double>(reach), reach - most);
-	bundle.directions = &directions;
-	return bundle;
-}
-
-// The first hit of each ray, all in double.
-std::span<const tracing::Met> Tracer::Data::nearestOf(glm::dvec3 origin, const Directions& directions, float reach) const
-{
-	std::vector<RTCRayHit>& rays = scratch<RTCRayHit>();
-	std::vector<tracing::Met>& met = scratch<tracing::Met>();
-	met.assign(directions.x.size(), {});
-	tracing::Bundle bundle = aim(rays, origin, directions, reach);
-	bundle.met = met;
-	trace(scene, bundle, std::span(rays.data(), met.size()));
-	for (std::size_t i = 0; i < met.size(); ++i)
-	{
-		if (met[i].hit)
-		{
-			const tracing::Part& part = met[i].masked ? masked : opaque;
-			const PlaneHit hit =
-				meet(level, part.triangles[met[i].primitive], origin, bundle.directionOf(static_cast<unsigned>(i)));
-			met[i].t = hit.t > 0.0 ? hit.t : 0.0; // rounding may place the ray's origin just behind the surface that it hit
-			met[i].front = hit.rise < 0.0;
-		}
-	}
-	return met;
 }
 
 void Tracer::distances(glm::dvec3 origin, const Directions& directions, float reach, std::span<float> distances) const

@@ -49,8 +49,7 @@ public:
 	// results. `occluders`: 1 for each triangle that rays hit; empty: all.
 	Tracer(const Level& level, const RunSettings& run, const Vicinity* near = nullptr, std::span<const uint8_t> occluders = {});
 	~Tracer();
-	Tracer(const Tracer&) = delete;
-	Tracer& operator=(const Tracer&) = delete;
+	Tracer& operator=(Tracer&&) = delete;
 
 	const Level& level() const;
 

@@ -672,8 +672,7 @@ AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSet
 
 AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSettings& settings, const DrawSettings& drawing)
 {
-	AovGlOptions options;
-	options.choose_faces = settings.choose_faces;
+	AovGlOptions options{.choose_faces = settings.choose_faces};
 	return aovOnGl(gbuffer, volumes, settings, drawing, options);
 }
 

@@ -261,11 +261,8 @@ private:
 
 std::unique_ptr<LevelAsset> makeBake(const AssetSource& source, const AssetSettings& asset, const RunSettings& run)
 {
-	BakeSettings settings;
-	settings.radius_m = source.radius_m;
-	settings.falloff = Falloff::linear;
-	settings.max_error = asset.bake_error;
-	settings.few = source.few;
+	BakeSettings settings{
+		.radius_m = source.radius_m, .falloff = Falloff::linear, .max_error = asset.bake_error, .few = source.few};
 	Level level = source.level; // as nook bake does it
 	std::vector<uint8_t> turned;
 	std::optional<Tracer> of_aligned;

@@ -136,8 +136,7 @@ Pattern defaultPattern(const ShadeSettings& settings, const RunSettings& run)
 	{
 		return row.own_pattern(row.default_count);
 	}
-	Recipe recipe;
-	recipe.domain = domainOf(settings.method);
+	Recipe recipe{.domain = domainOf(settings.method)};
 	recipe.count = row.default_count / radiiOf(settings.volume); // as many depths
 	recipe.symmetric = settings.volume.paired;
 	recipe.order = settings.bands.count > 1 ? Order::progressive : Order::none;
@@ -149,8 +148,7 @@ PatternTile tileFor(const std::string& path, const ShadeSettings& settings, cons
 	const Domain domain = domainOf(settings.method);
 	if (path.empty())
 	{
-		TileRecipe tile;
-		tile.kind = TileKind::random;
+		TileRecipe tile{.kind = TileKind::random};
 		return generateTile(defaultPattern(settings, run), tile, run);
 	}
 	std::variant<PatternFile, TileFile> input =

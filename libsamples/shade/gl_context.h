@@ -31,8 +31,7 @@ public:
 	// Uses the driver's default device, or an EGL device by number (from 0, in EGL's order).
 	explicit GlContext(GlApi api = GlApi::core, std::optional<int> device = std::nullopt);
 	~GlContext();
-	GlContext(const GlContext&) = delete;
-	GlContext& operator=(const GlContext&) = delete;
+	GlContext& operator=(GlContext&&) = delete;
 
 	// Makes the context current on this thread again.
 	void use() const;
@@ -200,8 +199,7 @@ public:
 	// Throws Error (unsupported) like GlContext.
 	explicit GlSession(std::optional<int> device = std::nullopt);
 	~GlSession();
-	GlSession(const GlSession&) = delete;
-	GlSession& operator=(const GlSession&) = delete;
+	GlSession& operator=(GlSession&&) = delete;
 
 	// Makes the context current on this thread.
 	const GlContext& use() const;

@@ -279,8 +279,7 @@ ShadeSamples samplesOf(const Candidate& candidate, const ShadeSettings& settings
 	if (candidate.source == SampleSource::own)
 	{
 		assert(rowOf(settings.method).own_pattern != nullptr);
-		TileRecipe tile;
-		tile.kind = TileKind::random;
+		TileRecipe tile{.kind = TileKind::random};
 		variants = generateTile(rowOf(settings.method).own_pattern(candidate.count), tile, run).variants;
 	}
 	else

@@ -234,11 +234,7 @@ struct ViewBench::Data
 
 	std::vector<ReferenceValue> trace(int rays, uint32_t seed, const RunSettings& trace_run) const
 	{
-		ReferenceSettings how;
-		how.falloff = Falloff::linear;
-		how.radius_m = level.radius_m;
-		how.rays = rays;
-		how.seed = seed;
+		ReferenceSettings how{.falloff = Falloff::linear, .radius_m = level.radius_m, .rays = rays, .seed = seed};
 		return referenceOfGBuffer(&level.tracer, gbuffer, how, trace_run);
 	}
 
@@ -389,8 +385,7 @@ ViewErrors ViewBench::errorsOf(const std::vector<float>& visibility) const
 	const VisibilityPlane test{m_data->gbuffer.width_px, m_data->gbuffer.height_px, visibility};
 	const std::vector<float>& reference = m_data->reference().visibility;
 	const VisibilityPlane truth{m_data->gbuffer.width_px, m_data->gbuffer.height_px, reference};
-	CompareSettings how;
-	how.counted = m_data->surface;
+	CompareSettings how{.counted = m_data->surface};
 	const Comparison found = compareImages(test, truth, how, m_data->timed);
 	errors = {found.eq14, found.rmse, found.flip, found.ssim, found.mean_error, 1.0, found.rmse};
 

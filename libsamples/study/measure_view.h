@@ -110,8 +110,7 @@ public:
 	// `radius`: reach of the reference's rays, metres (linear falloff); 0: suggestedRadius(). `store`: of several levels in one
 	// run. `few`: of its bakes, BakeSettings::few. Throws as Tracer.
 	LevelBench(Level given, double radius, const RunSettings& run, std::shared_ptr<SampleStore> store = nullptr, double few = 0.0);
-	LevelBench(const LevelBench&) = delete;
-	LevelBench& operator=(const LevelBench&) = delete;
+	LevelBench& operator=(LevelBench&&) = delete;
 
 	// Made at the first call. Requires kind asset; Throws as the kind's maker.
 	LevelAsset& asset(const Candidate& candidate);

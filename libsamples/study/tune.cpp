@@ -209,10 +209,8 @@ private:
 		{
 			return std::max(16, static_cast<int>(std::floor(scale * pixels + 0.5)));
 		};
-		ViewSettings how;
-		how.width_px = side(settings.width_px);
-		how.height_px = side(settings.height_px);
-		how.reference_rays = settings.reference_rays;
+		ViewSettings how{
+			.width_px = side(settings.width_px), .height_px = side(settings.height_px), .reference_rays = settings.reference_rays};
 		LevelBench& level = *m_report.levels[m_views[view].level].bench;
 		const std::string name = viewHash(level, m_views[view].camera, how, settings.version);
 		const std::optional<Reference> known = m_store != nullptr ? m_store->get<Reference>("reference " + name) : std::nullopt;

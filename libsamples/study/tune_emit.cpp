@@ -44,14 +44,7 @@ public:
 
 	TuneEmission take()
 	{
-		if (m_candidate.kind == CandidateKind::asset)
-		{
-			addAsset();
-		}
-		else
-		{
-			addModule();
-		}
+		m_candidate.kind == CandidateKind::asset ? addAsset() : addModule();
 		return std::move(m_made);
 	}
 

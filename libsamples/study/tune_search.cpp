@@ -24,12 +24,32 @@ namespace
 constexpr std::size_t kAnchors = 2;
 constexpr std::size_t kFewCandidates = 80;
 
+// Where the errors of two candidates do not differ significantly, the second is taken if its error is no greater than this many
+// times the first's, and its time no longer than this many times the first's. A significance over few views is coarse, and less
+// than 5 % of a time is the clock's.
+constexpr double kAlikeError = 1.02;
+constexpr double kAlikeTime = 0.95;
+
+// A candidate goes on if what its rung expects exceeds the bound by no more than these factors: at coarse size, and at full size
+// with fewer views.
+// Tuned on the grids of test_tune_search.cpp.
+constexpr double kTimeSlack = 1.5;
+constexpr double kErrorSlack = 1.15;
+constexpr double kFullSizeSlack = 1.06;
+
+// Candidates drawn once on all views have their final errors; a time that exceeds the budget by more than this factor rules one
+// out.
+constexpr double kOnceSlack = 1.15;
+
+// This share of those that go on are the best within the bound; the others are the best within bound and slack.
+constexpr double kWithin = 0.5;
+
 class HalvingSearch
 {
 public:
 	HalvingSearch(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings, const MeasureTrial& measure,
 				  const Progress& progress)
-		: m_goal(goal), m_settings(settings), m_measure(measure), m_progress(progress), m_choice(goal, settings)
+		: m_goal(goal), m_settings(settings), m_measure(measure), m_progress(progress)
 	{
 		assert(candidates > 0 && settings.rungs.size() > 1 && settings.rungs.back().scale == 1.0);
 		assert(settings.rungs[settings.once()].scale == 1.0 &&
@@ -46,7 +66,7 @@ public:
 	TuneSearch halve()
 	{
 		std::vector<std::size_t> left = listOf(m_made.tried.size(), [](std::size_t i) { return i; });
-		for (std::size_t rung = 0; rung < m_settings.once() && left.size() > m_settings.least; ++rung)
+		for (std::size_t rung = 0; rung < once() && left.size() > m_settings.least; ++rung)
 		{
 			measureAll(left, rung);
 			scaleBounded(left, rung);
@@ -54,10 +74,10 @@ public:
 			{
 				m_coarse[rung][i] = wanted(i);
 			}
-			left = m_choice.best(m_made, left, rung);
+			left = best(left, rung);
 		}
-		measureAll(left, m_settings.once());
-		const std::vector<std::size_t> finalists = m_choice.possible(m_made, left);
+		measureAll(left, once());
+		const std::vector<std::size_t> finalists = possible(left);
 		ProgressCounter progress(m_progress, nameOfRung(last()), finalists.size());
 		for (const std::size_t i : finalists)
 		{
@@ -74,7 +94,19 @@ public:
 		return m_made;
 	}
 
+	TuneSearch choose(TuneSearch measured)
+	{
+		m_made = std::move(measured);
+		choose();
+		return m_made;
+	}
+
 private:
+	// The rung where all views are drawn once, and the last one.
+	std::size_t once() const
+	{
+		return m_settings.once();
+	}
 	std::size_t last() const
 	{
 		return m_settings.rungs.size() - 1;
@@ -103,7 +135,7 @@ private:
 	void measureOne(std::size_t i, std::size_t rung)
 	{
 		Tried& tried = m_made.tried[i];
-		if (isFrom(tried, m_settings.once()) && m_settings.rungs[rung].repetitions == 1)
+		if (isFrom(tried, once()) && m_settings.rungs[rung].repetitions == 1)
 		{
 			tried.rung = rung; // it was drawn once
 			m_made.rungs[rung].candidates += 1;
@@ -111,7 +143,7 @@ private:
 		}
 		try
 		{
-			const auto ahead = rung == m_settings.once() ? m_anchors.find(i) : m_anchors.end();
+			const auto ahead = rung == once() ? m_anchors.find(i) : m_anchors.end();
 			set(tried, ahead != m_anchors.end() ? ahead->second : m_measure(i, m_settings.rungs[rung]), rung);
 			if (ahead == m_anchors.end())
 			{
@@ -203,7 +235,7 @@ private:
 		}
 		try
 		{
-			const Trial trial = m_measure(i, m_settings.rungs[m_settings.once()]);
+			const Trial trial = m_measure(i, m_settings.rungs[once()]);
 			count(rung, trial);
 			m_anchors.emplace(i, trial);
 			return true;
@@ -214,17 +246,22 @@ private:
 		}
 	}
 
+	// The quantity to minimise, and the bounded one as a share of its bound.
 	double wanted(std::size_t i) const
 	{
-		return m_choice.wanted(m_made.tried[i]);
+		return m_goal.budget_s ? m_made.tried[i].error : m_made.tried[i].time_s;
 	}
 	double bounded(std::size_t i) const
 	{
-		return m_choice.bounded(m_made.tried[i]);
+		return m_goal.budget_s ? m_made.tried[i].time_s / *m_goal.budget_s : m_made.tried[i].error / *m_goal.max_error;
 	}
-	void choose()
+
+	// The same candidates, those with the least of a quantity first.
+	std::vector<std::size_t> sorted(std::vector<std::size_t> list, double (HalvingSearch::*quantity)(std::size_t) const) const
 	{
-		m_choice.choose(m_made);
+		std::stable_sort(list.begin(), list.end(),
+						 [&](std::size_t a, std::size_t b) { return (this->*quantity)(a) < (this->*quantity)(b); });
+		return list;
 	}
 
 	// Nothing that went on reaches the goal: others, nearest first, as many as went on, before it is said that nothing does.
@@ -233,14 +270,14 @@ private:
 		std::vector<std::size_t> others;
 		for (const Tried& tried : m_made.tried)
 		{
-			const bool drawn = isFrom(tried, m_settings.once());
+			const bool drawn = isFrom(tried, once());
 			const double slack = !drawn ? kTimeSlack : m_goal.budget_s ? kOnceSlack : 1.0;
 			if (tried.failed.empty() && !isFrom(tried, last()) && bounded(tried.candidate) <= slack)
 			{
 				others.push_back(tried.candidate);
 			}
 		}
-		std::stable_sort(others.begin(), others.end(), [this](std::size_t a, std::size_t b) { return bounded(a) < bounded(b); });
+		others = sorted(others, &HalvingSearch::bounded);
 		others.resize(std::min(others.size(), m_settings.least));
 		for (std::size_t k = 0; k < others.size() && !m_made.pick; ++k)
 		{
@@ -255,9 +292,9 @@ private:
 	{
 		for (const auto& [i, trial] : m_anchors)
 		{
-			if (Tried& tried = m_made.tried[i]; tried.failed.empty() && !isFrom(tried, m_settings.once()))
+			if (Tried& tried = m_made.tried[i]; tried.failed.empty() && !isFrom(tried, once()))
 			{
-				set(tried, trial, m_settings.once());
+				set(tried, trial, once());
 			}
 		}
 		for (const auto& [rung, before] : m_coarse)
@@ -266,7 +303,7 @@ private:
 			double known = 0.0;
 			for (const auto& [i, value] : before)
 			{
-				if (isFrom(m_made.tried[i], m_settings.once()) && value > 0.0) // a bake takes no time at any size
+				if (isFrom(m_made.tried[i], once()) && value > 0.0) // a bake takes no time at any size
 				{
 					logarithms += std::log(std::max(wanted(i), 1e-30) / std::max(value, 1e-30));
 					known += 1.0;
@@ -290,22 +327,184 @@ private:
 		ProgressCounter progress(m_progress, "expected to be better");
 		for (;;)
 		{
-			std::optional<std::size_t> next = m_choice.expectedBetter(m_made);
-			next = next ? next : m_choice.expectedAlike(m_made);
+			std::optional<std::size_t> next = expectedBetter();
+			next = next ? next : expectedAlike();
 			if (!next)
 			{
 				break;
 			}
-			measureOne(*next, isFrom(m_made.tried[*next], m_settings.once()) ? last() : m_settings.once());
+			measureOne(*next, isFrom(m_made.tried[*next], once()) ? last() : once());
 			choose();
 		}
+	}
+
+	// Returns the candidates `left` at a rung that go on.
+	std::vector<std::size_t> best(const std::vector<std::size_t>& left, std::size_t rung) const
+	{
+		const bool coarse = m_settings.rungs[rung].scale < 1.0;
+		const double share = coarse ? m_settings.keep_coarse : m_settings.keep_full;
+		const double slack_here = !coarse ? kFullSizeSlack : m_goal.budget_s ? kTimeSlack : kErrorSlack;
+		const auto shared = static_cast<std::size_t>(std::ceil(share * static_cast<double>(left.size())));
+		const auto count = std::min(left.size(), std::max(m_settings.least, shared));
+		const auto within = static_cast<std::size_t>(std::ceil(kWithin * static_cast<double>(count)));
+		const std::vector<std::size_t> by_wanted = sorted(left, &HalvingSearch::wanted);
+		const std::vector<std::size_t> by_bounded = sorted(left, &HalvingSearch::bounded);
+		std::vector<std::size_t> kept;
+		const auto keep = [&kept](std::size_t i)
+		{
+			if (std::find(kept.begin(), kept.end(), i) == kept.end())
+			{
+				kept.push_back(i);
+			}
+		};
+		if (left.empty())
+		{
+			return kept;
+		}
+		if (bounded(by_bounded.front()) > 1.0)
+		{
+			keep(by_bounded.front()); // nothing may reach the bound: then this is what comes nearest
+		}
+		for (const auto& [slack, until] : {std::pair(1.0, within), std::pair(slack_here, count)})
+		{
+			for (std::size_t k = 0; k < by_wanted.size() && kept.size() < until; ++k)
+			{
+				if (bounded(by_wanted[k]) <= slack)
+				{
+					keep(by_wanted[k]);
+				}
+			}
+		}
+		for (std::size_t k = 0; kept.size() < count; ++k)
+		{
+			keep(by_bounded[k]);
+		}
+		return kept;
+	}
+
+	// Returns those drawn once on all views that can be the pick, best first; the nearest where none can.
+	std::vector<std::size_t> possible(const std::vector<std::size_t>& left) const
+	{
+		const double slack = m_goal.budget_s ? kOnceSlack : 1.0; // of what is bounded
+		double least = std::numeric_limits<double>::infinity();  // wanted, of those that are surely within the bound
+		for (const std::size_t i : left)
+		{
+			least = bounded(i) <= 1.0 / slack ? std::min(least, wanted(i)) : least;
+		}
+		least *= m_goal.budget_s ? 1.0 : kOnceSlack;
+		const auto kept = itemsWhere(left, [&](std::size_t i) { return bounded(i) <= slack && wanted(i) <= least; });
+		if (kept.empty() && !left.empty())
+		{
+			return {sorted(left, &HalvingSearch::bounded).front()};
+		}
+		return sorted(kept, &HalvingSearch::wanted);
+	}
+
+	// Where an error is what counts: under a budget that is met, or a bound of error that is missed.
+	bool isAlike(const Tried& best, const Tried& other) const
+	{
+		const bool reaches = m_goal.budget_s ? bounded(other.candidate) <= 1.0 : bounded(best.candidate) > 1.0;
+		if (!isFrom(other, once()) || !reaches || other.time_s > kAlikeTime * best.time_s || other.error > kAlikeError * best.error)
+		{
+			return false;
+		}
+		const CandidateComparison found = compareTrials(best.trial, other.trial);
+		return found.error_standard && !found.errors_differ;
+	}
+
+	// In time, and of equal times in bytes.
+	static bool isCheaper(const Tried& one, const Tried& other)
+	{
+		return one.time_s != other.time_s ? one.time_s < other.time_s : bytesOf(one.trial) < bytesOf(other.trial);
+	}
+
+	// Sets pick, or nearest, and instead_of and runner_up. The pick has the least wanted quantity of those measured in full; where
+	// that is an error, it is the fastest of those that are alike.
+	void choose()
+	{
+		m_made.pick.reset();
+		m_made.nearest.reset();
+		m_made.instead_of.reset();
+		m_made.runner_up.reset();
+		const auto isBetter = [&](const Tried& tried, const std::optional<std::size_t>& known)
+		{
+			return bounded(tried.candidate) <= 1.0 && (!known || wanted(tried.candidate) < wanted(*known));
+		};
+		for (const Tried& tried : m_made.tried)
+		{
+			if (isFrom(tried, last()))
+			{
+				const bool nearer = !m_made.nearest || bounded(tried.candidate) < bounded(*m_made.nearest);
+				m_made.nearest = nearer ? tried.candidate : m_made.nearest;
+				m_made.pick = isBetter(tried, m_made.pick) ? tried.candidate : m_made.pick;
+			}
+		}
+		std::optional<std::size_t>& taken = m_made.pick ? m_made.pick : m_made.nearest;
+		const bool of_error = m_made.pick ? m_goal.budget_s.has_value() : m_goal.max_error.has_value();
+		if (taken && of_error)
+		{
+			const std::size_t best = *taken;
+			for (const Tried& tried : m_made.tried)
+			{
+				if (isFrom(tried, last()) && isAlike(m_made.tried[best], tried) && isCheaper(tried, m_made.tried[*taken]))
+				{
+					taken = tried.candidate;
+					m_made.instead_of = best;
+				}
+			}
+		}
+		for (const Tried& tried : m_made.tried)
+		{
+			const bool known = isFrom(tried, once()) && tried.candidate != m_made.pick;
+			m_made.runner_up = known && isBetter(tried, m_made.runner_up) ? tried.candidate : m_made.runner_up;
+		}
+		if (m_made.pick)
+		{
+			m_made.nearest.reset();
+		}
+	}
+
+	// Returns the best candidate that was not measured in full, but is expected to reach the goal and to be better than the pick.
+	// Without a pick there is none.
+	std::optional<std::size_t> expectedBetter() const
+	{
+		const auto isBetter = [this](std::size_t i)
+		{
+			const Tried& tried = m_made.tried[i];
+			return m_made.pick && tried.failed.empty() && !tried.trial.views.empty() && !isFrom(tried, last()) &&
+				   bounded(i) <= 1.0 && wanted(i) < wanted(m_made.instead_of.value_or(*m_made.pick));
+		};
+		const auto better = sorted(indicesWhere(m_made.tried.size(), isBetter), &HalvingSearch::wanted);
+		return better.empty() ? std::nullopt : std::optional(better.front());
+	}
+
+	// Returns a candidate that was not measured in full, and is expected to be the fastest of those that are like the pick, or the
+	// nearest.
+	std::optional<std::size_t> expectedAlike() const
+	{
+		const std::optional<std::size_t> taken = m_made.taken();
+		const bool of_error = m_made.pick ? m_goal.budget_s.has_value() : m_goal.max_error.has_value();
+		if (!taken || !of_error)
+		{
+			return std::nullopt;
+		}
+		const Tried& best = m_made.tried[m_made.instead_of.value_or(*taken)];
+		std::optional<std::size_t> found;
+		for (const Tried& tried : m_made.tried)
+		{
+			if (tried.failed.empty() && !isFrom(tried, last()) && isAlike(best, tried) && isCheaper(tried, m_made.tried[*taken]) &&
+				(!found || isCheaper(tried, m_made.tried[*found])))
+			{
+				found = tried.candidate;
+			}
+		}
+		return found;
 	}
 
 	const TuneGoal& m_goal;
 	const TuneSearchSettings& m_settings;
 	const MeasureTrial& m_measure;
 	const Progress& m_progress;
-	TuneChoice m_choice;
 	std::map<std::size_t, Trial> m_anchors;
 	std::map<std::size_t, std::map<std::size_t, double>> m_coarse; // what is wanted, by rung and candidate
 	TuneSearch m_made;
@@ -330,15 +529,17 @@ double overLevels(const Trial& trial, OverLevels over, double ViewTrial::*value)
 	return over == OverLevels::mean ? mean : worst;
 }
 
-// This share of those that go on are the best within the bound; the others are the best within bound and slack.
-constexpr double kWithin = 0.5;
-
 } // namespace
 
 TuneSearch searchCandidates(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings,
 							const MeasureTrial& measure, const Progress& progress)
 {
 	return HalvingSearch(candidates, goal, settings, measure, progress).halve();
+}
+
+TuneSearch chooseOf(TuneSearch measured, const TuneGoal& goal, const TuneSearchSettings& settings)
+{
+	return HalvingSearch(measured.tried.size(), goal, settings, {}, {}).choose(std::move(measured));
 }
 
 std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t rung)
@@ -412,179 +613,6 @@ CandidateComparison compareTrials(const Trial& first, const Trial& second)
 		made.errors_differ = std::fabs(made.error_difference) > 2.0 * *made.error_standard;
 	}
 	return made;
-}
-
-std::vector<std::size_t> TuneChoice::best(const TuneSearch& search, const std::vector<std::size_t>& left, std::size_t rung) const
-{
-	const double share = m_settings.rungs[rung].scale < 1.0 ? m_settings.keep_coarse : m_settings.keep_full;
-	const auto shared = static_cast<std::size_t>(std::ceil(share * static_cast<double>(left.size())));
-	const auto count = std::min(left.size(), std::max(m_settings.least, shared));
-	const auto within = static_cast<std::size_t>(std::ceil(kWithin * static_cast<double>(count)));
-	std::vector<std::size_t> by_wanted = left;
-	std::stable_sort(by_wanted.begin(), by_wanted.end(),
-					 [&](std::size_t a, std::size_t b) { return wanted(search.tried[a]) < wanted(search.tried[b]); });
-	std::vector<std::size_t> by_bounded = left;
-	std::stable_sort(by_bounded.begin(), by_bounded.end(),
-					 [&](std::size_t a, std::size_t b) { return bounded(search.tried[a]) < bounded(search.tried[b]); });
-	std::vector<std::size_t> kept;
-	const auto keep = [&kept](std::size_t i)
-	{
-		if (std::find(kept.begin(), kept.end(), i) == kept.end())
-		{
-			kept.push_back(i);
-		}
-	};
-	if (left.empty())
-	{
-		return kept;
-	}
-	if (bounded(search.tried[by_bounded.front()]) > 1.0)
-	{
-		keep(by_bounded.front()); // nothing may reach the bound: then this is what comes nearest
-	}
-	for (const auto& [slack, until] : {std::pair(1.0, within), std::pair(slackAt(rung), count)})
-	{
-		for (std::size_t k = 0; k < by_wanted.size() && kept.size() < until; ++k)
-		{
-			if (bounded(search.tried[by_wanted[k]]) <= slack)
-			{
-				keep(by_wanted[k]);
-			}
-		}
-	}
-	for (std::size_t k = 0; kept.size() < count; ++k)
-	{
-		keep(by_bounded[k]);
-	}
-	return kept;
-}
-
-std::vector<std::size_t> TuneChoice::possible(const TuneSearch& search, const std::vector<std::size_t>& left) const
-{
-	const double slack = m_goal.budget_s ? kOnceSlack : 1.0; // of what is bounded
-	double least = std::numeric_limits<double>::infinity();  // wanted, of those that are surely within the bound
-	for (const std::size_t i : left)
-	{
-		least = bounded(search.tried[i]) <= 1.0 / slack ? std::min(least, wanted(search.tried[i])) : least;
-	}
-	least *= m_goal.budget_s ? 1.0 : kOnceSlack;
-	std::vector<std::size_t> kept =
-		itemsWhere(left, [&](std::size_t i) { return bounded(search.tried[i]) <= slack && wanted(search.tried[i]) <= least; });
-	std::stable_sort(kept.begin(), kept.end(),
-					 [&](std::size_t a, std::size_t b) { return wanted(search.tried[a]) < wanted(search.tried[b]); });
-	if (kept.empty() && !left.empty())
-	{
-		kept.push_back(*std::min_element(left.begin(), left.end(),
-										 [&](std::size_t a, std::size_t b)
-										 { return bounded(search.tried[a]) < bounded(search.tried[b]); }));
-	}
-	return kept;
-}
-
-double TuneChoice::slackAt(std::size_t rung) const
-{
-	return m_settings.rungs[rung].scale == 1.0 ? kFullSizeSlack : m_goal.budget_s ? kTimeSlack : kErrorSlack;
-}
-
-// Where an error is what counts: under a budget that is met, or a bound of error that is missed.
-bool TuneChoice::isAlike(const Tried& best, const Tried& other) const
-{
-	const bool reaches = m_goal.budget_s ? bounded(other) <= 1.0 : bounded(best) > 1.0;
-	if (!isFrom(other, m_once) || !reaches || other.time_s > kAlikeTime * best.time_s || other.error > kAlikeError * best.error)
-	{
-		return false;
-	}
-	const CandidateComparison found = compareTrials(best.trial, other.trial);
-	return found.error_standard && !found.errors_differ;
-}
-
-bool TuneChoice::isCheaper(const Tried& one, const Tried& other)
-{
-	return one.time_s != other.time_s ? one.time_s < other.time_s : bytesOf(one.trial) < bytesOf(other.trial);
-}
-
-void TuneChoice::choose(TuneSearch& search) const
-{
-	search.pick.reset();
-	search.nearest.reset();
-	search.instead_of.reset();
-	search.runner_up.reset();
-	const auto isBetter = [&](const Tried& tried, const std::optional<std::size_t>& known)
-	{
-		return bounded(tried) <= 1.0 && (!known || wanted(tried) < wanted(search.tried[*known]));
-	};
-	for (const Tried& tried : search.tried)
-	{
-		if (isFrom(tried, m_last))
-		{
-			const bool nearer = !search.nearest || bounded(tried) < bounded(search.tried[*search.nearest]);
-			search.nearest = nearer ? tried.candidate : search.nearest;
-			search.pick = isBetter(tried, search.pick) ? tried.candidate : search.pick;
-		}
-	}
-	std::optional<std::size_t>& taken = search.pick ? search.pick : search.nearest;
-	const bool of_error = search.pick ? m_goal.budget_s.has_value() : m_goal.max_error.has_value();
-	if (taken && of_error)
-	{
-		const std::size_t best = *taken;
-		for (const Tried& tried : search.tried)
-		{
-			if (isFrom(tried, m_last) && isAlike(search.tried[best], tried) && isCheaper(tried, search.tried[*taken]))
-			{
-				taken = tried.candidate;
-				search.instead_of = best;
-			}
-		}
-	}
-	for (const Tried& tried : search.tried)
-	{
-		const bool known = isFrom(tried, m_once) && tried.candidate != search.pick;
-		search.runner_up = known && isBetter(tried, search.runner_up) ? tried.candidate : search.runner_up;
-	}
-	if (search.pick)
-	{
-		search.nearest.reset();
-	}
-}
-
-std::optional<std::size_t> TuneChoice::expectedBetter(const TuneSearch& search) const
-{
-	if (!search.pick)
-	{
-		return std::nullopt;
-	}
-	const Tried& best = search.tried[search.instead_of.value_or(*search.pick)];
-	std::optional<std::size_t> found;
-	for (const Tried& tried : search.tried)
-	{
-		if (tried.failed.empty() && !tried.trial.views.empty() && !isFrom(tried, m_last) && bounded(tried) <= 1.0 &&
-			wanted(tried) < wanted(best) && (!found || wanted(tried) < wanted(search.tried[*found])))
-		{
-			found = tried.candidate;
-		}
-	}
-	return found;
-}
-
-std::optional<std::size_t> TuneChoice::expectedAlike(const TuneSearch& search) const
-{
-	const std::optional<std::size_t> taken = search.taken();
-	const bool of_error = search.pick ? m_goal.budget_s.has_value() : m_goal.max_error.has_value();
-	if (!taken || !of_error)
-	{
-		return std::nullopt;
-	}
-	const Tried& best = search.tried[search.instead_of.value_or(*taken)];
-	std::optional<std::size_t> found;
-	for (const Tried& tried : search.tried)
-	{
-		if (tried.failed.empty() && !isFrom(tried, m_last) && isAlike(best, tried) && isCheaper(tried, search.tried[*taken]) &&
-			(!found || isCheaper(tried, search.tried[*found])))
-		{
-			found = tried.candidate;
-		}
-	}
-	return found;
 }
 
 } // namespace nook

@@ -148,73 +148,10 @@ struct TuneSearch
 TuneSearch searchCandidates(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings,
 							const MeasureTrial& measure, const Progress& progress = {});
 
+// The same measurements with pick, or nearest, and instead_of and runner_up set by the goal.
+TuneSearch chooseOf(TuneSearch measured, const TuneGoal& goal, const TuneSearchSettings& settings);
+
 // Returns the front of those measured at this rung or a later one, by time.
 std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t rung);
-
-// Measurements of a search and a goal → the candidate to take, and the ones to measure before that is certain.
-
-// Where the errors of two candidates do not differ significantly, the second is taken if its error is no greater than this many
-// times the first's, and its time no longer than this many times the first's. A significance over few views is coarse, and less
-// than 5 % of a time is the clock's.
-inline constexpr double kAlikeError = 1.02;
-inline constexpr double kAlikeTime = 0.95;
-
-// A candidate goes on if what its rung expects exceeds the bound by no more than these factors: at coarse size, and at full size
-// with fewer views.
-// Tuned on the grids of test_tune_search.cpp.
-inline constexpr double kTimeSlack = 1.5;
-inline constexpr double kErrorSlack = 1.15;
-inline constexpr double kFullSizeSlack = 1.06;
-
-// Candidates drawn once on all views have their final errors; a time that exceeds the budget by more than this factor rules one
-// out.
-inline constexpr double kOnceSlack = 1.15;
-
-class TuneChoice
-{
-public:
-	TuneChoice(const TuneGoal& goal, const TuneSearchSettings& settings)
-		: m_goal(goal), m_settings(settings), m_once(settings.once()), m_last(settings.rungs.size() - 1)
-	{
-	}
-
-	// The quantity to minimise, and the bounded one as a share of its bound.
-	double wanted(const Tried& tried) const
-	{
-		return m_goal.budget_s ? tried.error : tried.time_s;
-	}
-	double bounded(const Tried& tried) const
-	{
-		return m_goal.budget_s ? tried.time_s / *m_goal.budget_s : tried.error / *m_goal.max_error;
-	}
-
-	// Returns the candidates `left` at a rung that go on.
-	std::vector<std::size_t> best(const TuneSearch& search, const std::vector<std::size_t>& left, std::size_t rung) const;
-
-	// Returns those drawn once on all views that can be the pick, best first; the nearest where none can.
-	std::vector<std::size_t> possible(const TuneSearch& search, const std::vector<std::size_t>& left) const;
-
-	// Sets pick, or nearest, and instead_of and runner_up. The pick has the least wanted quantity of those measured in full; where
-	// that is an error, it is the fastest of those that are alike.
-	void choose(TuneSearch& search) const;
-
-	// Returns the best candidate that was not measured in full, but is expected to reach the goal and to be better than the pick.
-	// Without a pick there is none.
-	std::optional<std::size_t> expectedBetter(const TuneSearch& search) const;
-
-	// Returns a candidate that was not measured in full, and is expected to be the fastest of those that are like the pick, or the
-	// nearest.
-	std::optional<std::size_t> expectedAlike(const TuneSearch& search) const;
-
-private:
-	double slackAt(std::size_t rung) const;
-	bool isAlike(const Tried& best, const Tried& other) const;
-	static bool isCheaper(const Tried& one, const Tried& other); // in time, and of equal times in bytes
-
-	TuneGoal m_goal;
-	TuneSearchSettings m_settings;
-	std::size_t m_once; // the rung where all views are drawn once
-	std::size_t m_last;
-};
 
 } // namespace nook

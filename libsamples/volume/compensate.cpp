@@ -329,10 +329,7 @@ std::vector<std::vector<double>> occlusionsOf(const Tracer& tracer, std::span<co
 											  std::span<const double> radii_m, const CompensateSettings& settings,
 											  const RunSettings& run)
 {
-	ReferenceSettings reference;
-	reference.falloff = Falloff::linear;
-	reference.rays = settings.rays;
-	reference.seed = settings.seed;
+	ReferenceSettings reference{.falloff = Falloff::linear, .rays = settings.rays, .seed = settings.seed};
 	std::vector<std::vector<double>> lists = visibilitiesWithin(tracer, points, reference, radii_m, run);
 	for (std::vector<double>& list : lists)
 	{
@@ -515,8 +512,7 @@ Compensation fitCurve(std::span<const double> sums, std::span<const double> occl
 			  [&](std::size_t a, std::size_t b) { return sums[a] != sums[b] ? sums[a] < sums[b] : a < b; });
 
 	// The range covers all but the last thousandth of the sums; beyond it the curve is constant.
-	Compensation curve;
-	curve.range = std::max(0.125, sums[order[(order.size() - 1) - order.size() / 1000]]);
+	Compensation curve{.range = std::max(0.125, sums[order[(order.size() - 1) - order.size() / 1000]])};
 
 	// Eq. 14's logarithms of visibility fall with the sum; their negatives rise.
 	const auto places = mapped(order, [&](std::size_t i) { return sums[i] / curve.range; });

@@ -15,10 +15,7 @@ void addMerged(const OccluderCounts& merged, Facts& to)
 {
 	to.whole("level_triangles", merged.triangles, "triangles");
 	to.whole("triangles_simplified", merged.proxies);
-	if (merged.proxies != merged.triangles)
-	{
-		to.line("  after simplification: " + std::to_string(merged.proxies));
-	}
+	to.when(merged.proxies != merged.triangles).line("  after simplification: " + std::to_string(merged.proxies));
 	to.reason("triangles_thin", merged.thin, "dropped, without area");
 	to.reason("triangles_duplicate", merged.duplicates, "dropped, there twice");
 	to.reason("triangles_reversed", merged.reversed, "dropped, the back of another");
@@ -26,10 +23,8 @@ void addMerged(const OccluderCounts& merged, Facts& to)
 	to.reason("polygons_two_sided", merged.two_sided, "two-sided");
 	to.reason("regions_not_merged", merged.fallbacks, "flat regions that overlap themselves, joined triangle by triangle");
 	to.number("simplification_m", merged.deviation_m);
-	if (merged.deviation_m > 0.0)
-	{
-		to.line("  simplification moved surfaces by at most " + roundedText(merged.deviation_m, 4) + " m");
-	}
+	to.when(merged.deviation_m > 0.0)
+		.line("  simplification moved surfaces by at most " + roundedText(merged.deviation_m, 4) + " m");
 }
 
 void addDetail(const DetailChoice& choice, Facts& to)
@@ -68,10 +63,7 @@ void addDropped(const DropCounts& dropped, Facts& to)
 	to.reason("dropped_below", dropped.below, "dropped, contribute too little");
 	to.reason("turned", dropped.turned, "two-sided, now one-sided");
 	to.number("greatest_loss", dropped.greatest_loss);
-	if (dropped.below > 0)
-	{
-		to.line("  by that no receiver loses more than " + roundedText(dropped.greatest_loss, 4) + " (proven)");
-	}
+	to.when(dropped.below > 0).line("  by that no receiver loses more than " + roundedText(dropped.greatest_loss, 4) + " (proven)");
 	if (dropped.check_rays > 0)
 	{
 		to.whole("sight_rays", dropped.check_rays, "rays from the boxes that checked what they see");
@@ -151,14 +143,9 @@ void addKeptOut(const CompensateResult& compensated, Facts& to)
 				change(check.before.rmse, check.after.rmse) + "; mean " + change(check.before.mean, check.after.mean) +
 				"; eq. 14 " + change(check.before.eq14, check.after.eq14));
 	}
-	if (!compensated.refused && check.after.rmse > check.before.rmse)
-	{
-		to.line("  the RMSE is worse: --compensate-measure rmse fits to that");
-	}
-	if (compensated.refused)
-	{
-		to.line("  that is worse than the paper's curve, which is kept");
-	}
+	to.when(!compensated.refused && check.after.rmse > check.before.rmse)
+		.line("  the RMSE is worse: --compensate-measure rmse fits to that");
+	to.when(compensated.refused).line("  that is worse than the paper's curve, which is kept");
 }
 
 void addCompensated(const CompensateResult& compensated, const CompensateSettings& settings, Facts& to)
@@ -238,10 +225,7 @@ void describeBuilt(const BuiltVolumes& built, const VolumeFile& file, const Volu
 	to.whole("file_triangles", packed.indices.size() / 3);
 	addFile(file.bytes.size(), packed.clusters.size(), packed.polygons.size(), packed.greatest_error_m, packed.plane_error_m, to);
 	to.whole("memory_estimate_bytes", built.memory_estimate_bytes);
-	if (!built.left_out.empty())
-	{
-		to.text("left_out", built.left_out);
-	}
+	to.when(!built.left_out.empty()).text("left_out", built.left_out);
 	if (built.compensated)
 	{
 		addCompensated(*built.compensated, *settings.compensate, to);

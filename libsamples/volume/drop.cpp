@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -41,6 +40,15 @@ enum class SideVerdict : uint8_t
 };
 
 constexpr std::size_t kDropBlock = 256; // polygons per thread and step
+
+struct FoundReceiver
+{
+	SideVerdict verdict = SideVerdict::needed; // or unseen, or inside
+	uint32_t triangle = 0;
+	unsigned side = 0; // 0: front
+	ReceiverSide receiver;
+	double rise_m = 0.0; // height of the polygon above it (region.h)
+};
 
 struct DropSearch
 {
@@ -98,60 +106,45 @@ struct DropSearch
 	// Calls visit(FoundReceiver) for each side of a triangle that reaches into the region and has the polygon above its plane,
 	// until it returns false; returns false then. Sets `any` if the triangle reaches into the region.
 	template <class Visit>
-	bool forTriangle(std::span<const glm::dvec3> of, const VolumeRegion& region, uint32_t triangle, bool& any, Visit&& visit) const;
-
-	// Likewise for all triangles. Returns whether any triangle reaches into the region.
-	template <class Visit> bool forReceivers(std::size_t polygon, const VolumeRegion& region, Visit&& visit) const;
-};
-
-struct FoundReceiver
-{
-	SideVerdict verdict = SideVerdict::needed; // or unseen, or inside
-	uint32_t triangle = 0;
-	unsigned side = 0; // 0: front
-	ReceiverSide receiver;
-	double rise_m = 0.0; // height of the polygon above it (region.h)
-};
-
-template <class Visit>
-bool DropSearch::forTriangle(std::span<const glm::dvec3> of, const VolumeRegion& region, uint32_t triangle, bool& any,
-							 Visit&& visit) const
-{
-	const Level& level = tracer.level();
-	const glm::uvec3 corner = level.triangles[triangle];
-	if (!reaches(region, {level.positions[corner.x], level.positions[corner.y], level.positions[corner.z]}))
+	bool forTriangle(std::span<const glm::dvec3> of, const VolumeRegion& region, uint32_t triangle, bool& any, Visit&& visit) const
 	{
+		const Level& level = tracer.level();
+		const glm::uvec3 corner = level.triangles[triangle];
+		if (!reaches(region, {level.positions[corner.x], level.positions[corner.y], level.positions[corner.z]}))
+		{
+			return true;
+		}
+		any = true;
+		FoundReceiver here;
+		here.triangle = triangle;
+		for (here.side = 0; here.side < 2; ++here.side)
+		{
+			const auto bit = static_cast<uint8_t>(1U << here.side);
+			if (!receiverSide(level, triangle, static_cast<int>(here.side), settings.smooth_normals, here.receiver))
+			{
+				continue;
+			}
+			here.rise_m = riseOf(of, here.receiver);
+			here.verdict = (sides.seen[triangle] & bit) != 0      ? SideVerdict::needed
+						   : (sides.outside[triangle] & bit) != 0 ? SideVerdict::unseen
+																  : SideVerdict::inside;
+			if (here.rise_m > kRise * distance_m && !visit(std::as_const(here)))
+			{
+				return false;
+			}
+		}
 		return true;
 	}
-	any = true;
-	FoundReceiver here;
-	here.triangle = triangle;
-	for (here.side = 0; here.side < 2; ++here.side)
-	{
-		const auto bit = static_cast<uint8_t>(1U << here.side);
-		if (!receiverSide(level, triangle, static_cast<int>(here.side), settings.smooth_normals, here.receiver))
-		{
-			continue;
-		}
-		here.rise_m = riseOf(of, here.receiver);
-		here.verdict = (sides.seen[triangle] & bit) != 0      ? SideVerdict::needed
-					   : (sides.outside[triangle] & bit) != 0 ? SideVerdict::unseen
-															  : SideVerdict::inside;
-		if (here.rise_m > kRise * distance_m && !visit(std::as_const(here)))
-		{
-			return false;
-		}
-	}
-	return true;
-}
 
-template <class Visit> bool DropSearch::forReceivers(std::size_t polygon, const VolumeRegion& region, Visit&& visit) const
-{
-	const std::span<const glm::dvec3> of = corners(polygon);
-	bool any = false;
-	tree->visit(region.box, region.planes(), [&](uint32_t triangle) { return forTriangle(of, region, triangle, any, visit); });
-	return any;
-}
+	// Likewise for all triangles. Returns whether any triangle reaches into the region.
+	template <class Visit> bool forReceivers(std::size_t polygon, const VolumeRegion& region, Visit&& visit) const
+	{
+		const std::span<const glm::dvec3> of = corners(polygon);
+		bool any = false;
+		tree->visit(region.box, region.planes(), [&](uint32_t triangle) { return forTriangle(of, region, triangle, any, visit); });
+		return any;
+	}
+};
 
 // Stages that need a block's verdicts run in the share that has them.
 std::string groupOfBlock(std::size_t block)

@@ -8,7 +8,6 @@
 #include "scene/tracer.h"
 #include "volume/volumes.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 

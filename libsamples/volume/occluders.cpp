@@ -565,8 +565,7 @@ void cutLong(Occluding& result, const Soup& soup, const std::vector<uint32_t>& l
 
 std::vector<uint8_t> closedTriangles(const Level& level, const RunSettings& run)
 {
-	OccluderSettings settings;
-	settings.merge = false;
+	OccluderSettings settings{.merge = false};
 	OccluderCounts counts;
 	const Soup soup{&level, level.triangles, level.materials, {}};
 	const Surface surface = surfaceOf(soup, settings, run, counts);

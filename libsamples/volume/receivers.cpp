@@ -623,8 +623,7 @@ VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::spa
 {
 	const std::vector<double> before = sumsAt(all, receivers, run);
 	const std::vector<double> after = sumsAt(kept, receivers, run);
-	VerifyResult result;
-	result.receivers = receivers.size();
+	VerifyResult result{.receivers = receivers.size()};
 	for (std::size_t i = 0; i < receivers.size(); ++i)
 	{
 		const double difference = std::fabs(before[i] - after[i]);

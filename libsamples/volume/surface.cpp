@@ -344,11 +344,8 @@ private:
 	// unique.
 	void joinKind(std::span<const AtEdge> run)
 	{
-		int balance = 0;
-		for (const AtEdge& edge : run)
-		{
-			balance += m_open[edge.half_edge] == kCopy ? 0 : (edge.forward ? 1 : -1);
-		}
+		const int balance =
+			sumOver(run, [&](const AtEdge& edge) { return m_open[edge.half_edge] == kCopy ? 0 : (edge.forward ? 1 : -1); });
 		for (std::size_t i = 0; i < run.size(); ++i)
 		{
 			m_links[run[i].half_edge] = i + 1 < run.size() ? run[i + 1].half_edge : kNone;

@@ -369,11 +369,9 @@ VolumeFile volumeGlb(const VolumeSet& volumes, const VolumeFileSettings& setting
 	VolumeFile file;
 	const bool prisms = settings.layout == VolumeLayout::prisms;
 	file.packed = packVolumes(volumes, {.prisms = prisms, .shared_corners = settings.compress && !prisms}, run);
-	if (file.packed.polygons.empty() && !volumes.occluders.polygons.empty())
-	{
-		throw Error(ExitCode::invalid_input,
-					std::string(level) + ": found no polygon that is larger than the steps of 16-bit numbers, expected one");
-	}
+	refuseIf(file.packed.polygons.empty() && !volumes.occluders.polygons.empty(),
+			 std::string(level) + ": found no polygon that is larger than the steps of 16-bit numbers, expected one",
+			 ExitCode::invalid_input);
 	file.bytes = Writer(volumes, file.packed, settings).bytes(level, generator);
 	return file;
 }

@@ -85,8 +85,7 @@ void compare(const GBuffer& gbuffer, const std::string& path)
 {
 	const VolumeSet set = readVolumes(path);
 	Table table(gbuffer);
-	AovSettings settings;
-	settings.target = AovTarget::r32f;
+	AovSettings settings{.target = AovTarget::r32f};
 	table.row("R32F, front faces", set, settings, {});
 	table.row("  no depth bounds", set, settings, {false, false, false, false});
 	table.row("  back faces, no depth bounds", set, settings, {false, false, false, true});

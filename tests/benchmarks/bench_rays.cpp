@@ -75,8 +75,7 @@ public:
 		rtcReleaseGeometry(geometry);
 		rtcCommitScene(m_scene);
 	}
-	BareEmbree(const BareEmbree&) = delete;
-	BareEmbree& operator=(const BareEmbree&) = delete;
+	BareEmbree& operator=(BareEmbree&&) = delete;
 	~BareEmbree()
 	{
 		rtcReleaseScene(m_scene);
@@ -238,9 +237,7 @@ void printRates(const Scene& scene, const BareEmbree& bare, int threads, int cou
 {
 	const std::vector<std::vector<RTCRay>> fresh = raysOf(scene, bare, count, radius_m);
 	const double rays = static_cast<double>(fresh.size()) * count;
-	ReferenceSettings settings;
-	settings.radius_m = static_cast<double>(radius_m);
-	settings.rays = count;
+	ReferenceSettings settings{.radius_m = static_cast<double>(radius_m), .rays = count};
 	const RunSettings run{threads, {}};
 	std::vector<double> best(std::size(kForms) + 1, 1e300);
 	for (int repeat = 0; repeat < kRepeats; ++repeat)
@@ -300,10 +297,7 @@ double stratified(const Tracer& tracer, glm::dvec3 origin, glm::dvec3 normal, in
 
 void printErrors(const Scene& scene, double radius_m)
 {
-	ReferenceSettings settings;
-	settings.radius_m = radius_m;
-	settings.rays = 8192;
-	settings.seed = 100;
+	ReferenceSettings settings{.radius_m = radius_m, .rays = 8192, .seed = 100};
 	const std::vector<ReferenceValue> truth = referenceOfGBuffer(&scene.tracer, scene.gbuffer, settings, scene.run);
 	const Projector projector(scene.gbuffer.view.projection, kWidth, kHeight);
 	const glm::dmat4 world_from_camera = glm::inverse(scene.gbuffer.view.camera_from_world);

@@ -91,19 +91,13 @@ double bestFactor(const GBuffer& gbuffer, const Picture& test, const Picture& tr
 
 Pattern patternOf(Domain domain, int count, bool symmetric = false, Order order = Order::none)
 {
-	Recipe recipe;
-	recipe.order = order;
-	recipe.domain = domain;
-	recipe.count = count;
-	recipe.symmetric = symmetric;
+	Recipe recipe{.domain = domain, .count = count, .symmetric = symmetric, .order = order};
 	return generatePattern(recipe, all());
 }
 
 ShadeSamples tiled(ShadeMethod method, const Pattern& pattern, TileKind kind, std::uint32_t seed = 1)
 {
-	TileRecipe tile;
-	tile.kind = kind;
-	tile.seed = seed;
+	TileRecipe tile{.kind = kind, .seed = seed};
 	return samplesOf(method, generateTile(pattern, tile, all()).variants);
 }
 
@@ -203,9 +197,7 @@ struct Truths
 
 Truths truthsOf(const Scene& scene, const GBuffer& gbuffer, double radius_m)
 {
-	ReferenceSettings settings;
-	settings.radius_m = radius_m;
-	settings.rays = 256;
+	ReferenceSettings settings{.radius_m = radius_m, .rays = 256};
 	Truths truths;
 	truths.hard = scene.reference(gbuffer, settings);
 	settings.falloff = Falloff::linear;
@@ -286,11 +278,8 @@ void printRadii(const Scene& scene)
 
 Picture depthTruth(const Scene& scene, const GBuffer& gbuffer)
 {
-	ReferenceSettings settings;
-	settings.measure = ReferenceMeasure::hemisphere;
-	settings.source = MatterSource::depth;
-	settings.radius_m = 0.5;
-	settings.rays = 512;
+	ReferenceSettings settings{
+		.measure = ReferenceMeasure::hemisphere, .source = MatterSource::depth, .radius_m = 0.5, .rays = 512};
 	return scene.reference(gbuffer, settings);
 }
 

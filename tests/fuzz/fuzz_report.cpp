@@ -37,9 +37,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 	return 0;
 }
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed)
-{
-	nook::fuzz::Chance chance(seed);
-	return nook::fuzz::written(nook::fuzz::mutatedJsonText(std::string(reinterpret_cast<const char*>(data), size), most, chance),
-							   data, most);
-}
+NOOK_MUTATED_BY(nook::fuzz::mutatedJsonText)

@@ -56,3 +56,11 @@ std::string mutatedJsonText(const std::string& text, std::size_t most, Chance& c
 std::string mutatedGlb(const std::string& glb, std::size_t most, Chance& chance);
 
 } // namespace nook::fuzz
+
+// The mutator of a target: libFuzzer calls it by this name.
+#define NOOK_MUTATED_BY(mutated)                                                                                                   \
+	extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed)          \
+	{                                                                                                                              \
+		nook::fuzz::Chance chance(seed);                                                                                           \
+		return nook::fuzz::written(mutated(std::string(reinterpret_cast<const char*>(data), size), most, chance), data, most);     \
+	}

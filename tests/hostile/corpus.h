@@ -2,11 +2,9 @@
 // Files made to break their reader, with the allowed exit codes. Generated; no file is committed.
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <map>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 

@@ -590,12 +590,6 @@ std::optional<Settings> settingsOf(const std::vector<std::string>& arguments)
 	return settings;
 }
 
-} // namespace
-} // namespace nook::hostile
-
-namespace
-{
-
 // How much slower than a second per GB this machine allocates memory: 1 on most, 4 on some virtual machines.
 double memorySlowness()
 {
@@ -616,6 +610,7 @@ double memorySlowness()
 }
 
 } // namespace
+} // namespace nook::hostile
 
 int main(int argc, char** argv)
 {
@@ -626,7 +621,7 @@ int main(int argc, char** argv)
 			<< "usage: nook_hostile NOOK CODES [--all] [--share N] [--slow FACTOR] [--record] [--only GROUP] [--write FOLDER]\n";
 		return 1;
 	}
-	const double memory = memorySlowness();
+	const double memory = nook::hostile::memorySlowness();
 	if (memory > 1.0)
 	{
 		std::printf("memory comes %.1f times slower than a second a GB here: so much longer may a file take\n", memory);

@@ -10,7 +10,6 @@
 #include <glm/mat4x4.hpp>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <vector>

@@ -163,7 +163,14 @@ void cast(const GBufferOptions& options, VerbProgress& progress)
 
 void run(GBufferOptions& options, VerbProgress& progress)
 {
-	options.level.level.ends_with(".exr") ? convert(options, progress) : cast(options, progress);
+	if (options.level.level.ends_with(".exr"))
+	{
+		convert(options, progress);
+	}
+	else
+	{
+		cast(options, progress);
+	}
 }
 
 } // namespace

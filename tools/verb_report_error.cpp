@@ -223,7 +223,14 @@ void runReport(ErrorOptions& options, VerbProgress& progress)
 	inputs.push_back(options.baseline);
 	std::erase(inputs, "");
 	checkOutputs(options.outputs, kPages, inputs);
-	options.join.empty() ? measure(options, progress) : join(options);
+	if (options.join.empty())
+	{
+		measure(options, progress);
+	}
+	else
+	{
+		join(options);
+	}
 }
 
 } // namespace

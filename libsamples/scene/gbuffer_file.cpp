@@ -534,7 +534,14 @@ GBuffer gbufferFrom(Image image, const std::string& path, const GBufferImport& i
 			gbuffer.depth_error_m.push_back(std::isfinite(gbuffer.depth[i]) ? depth.errorOf(i, gbuffer.depth[i]) : 0.0F);
 		}
 	}
-	import.normals_from_depth ? normalsFromDepth(gbuffer) : readNormals(gbuffer, file, import, projector);
+	if (import.normals_from_depth)
+	{
+		normalsFromDepth(gbuffer);
+	}
+	else
+	{
+		readNormals(gbuffer, file, import, projector);
+	}
 	return gbuffer;
 }
 

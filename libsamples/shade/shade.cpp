@@ -235,7 +235,14 @@ void runPass(const ShadePass& pass, const shade_kernels::Kernels& inputs, std::v
 	shade_kernels::Kernels kernels = inputs;
 	connect(pass, pictures, kernels);
 	PicturePlane& plane = pictures[pass.picture][static_cast<std::size_t>(pass.level + pass.layer)];
-	pass.scans ? scanOnCpu(kernels.tables[0], pass.block.axis, plane, run) : draw(pass, kernels, plane, run);
+	if (pass.scans)
+	{
+		scanOnCpu(kernels.tables[0], pass.block.axis, plane, run);
+	}
+	else
+	{
+		draw(pass, kernels, plane, run);
+	}
 }
 
 void scanOnCpu(const PicturePlane& source, int axis, PicturePlane& target, const RunSettings& run)

@@ -44,7 +44,14 @@ public:
 
 	TuneEmission take()
 	{
-		m_candidate.kind == CandidateKind::asset ? addAsset() : addModule();
+		if (m_candidate.kind == CandidateKind::asset)
+		{
+			addAsset();
+		}
+		else
+		{
+			addModule();
+		}
 		return std::move(m_made);
 	}
 

@@ -273,12 +273,12 @@ TEST_CASE("scene: every truncation of files at map coordinates ends with one lin
 	const TemporaryFolder folder;
 	const std::array<std::pair<const char*, std::string>, 4> files{
 		{{"a.obj", mapObj()}, {"a.ply", asciiPly()}, {"b.ply", binaryPly(true)}, {"a.stl", mapStl("a")}}};
-	for (const auto& [name, text] : files)
+	for (const auto& file : files)
 	{
-		for (std::size_t size = 0; size < text.size(); size += 13)
+		for (std::size_t size = 0; size < file.second.size(); size += 13)
 		{
-			INFO(name << " " << size);
-			refusalBy([&] { loadText(folder / name, text.substr(0, size)); });
+			INFO(file.first << " " << size);
+			refusalBy([&] { loadText(folder / file.first, file.second.substr(0, size)); });
 		}
 	}
 }

@@ -636,6 +636,22 @@ TEST_CASE("volume: proxies have fewer triangles, stay closed, and move little", 
 	REQUIRE(areaOf(simpler.occluders) == Approx(areaOf(level)).epsilon(0.03));
 }
 
+TEST_CASE("volume: a closed surface is simplified unless its backs are known to be seen", "[volume][occluders]")
+{
+	Level level = emptyLevel();
+	addSphere(level, {0.0, 0.0, 0.0}, 1.0, 40, 60);
+	nook::OccluderSettings settings;
+	settings.detail = 0.02;
+	REQUIRE(occluders(level, settings).counts.proxies < level.triangles.size() / 2);
+	for (const uint8_t is_idle : {uint8_t{0}, uint8_t{1}})
+	{
+		settings.one_sided.assign(level.triangles.size(), is_idle);
+		const nook::OccluderCounts counts = occluders(level, settings).counts;
+		REQUIRE((counts.proxies == level.triangles.size()) == (is_idle == 0));
+		REQUIRE(counts.two_sided == 0);
+	}
+}
+
 TEST_CASE("volume: long polygons are cut, whatever their tessellation", "[volume][occluders]")
 {
 	std::vector<std::string> first;

@@ -582,20 +582,27 @@ Occluding occludersOf(const Level& level, const OccluderSettings& settings, cons
 	counts.triangles = level.triangles.size();
 	Proxies proxies;
 	Soup soup{&level, level.triangles, level.materials, {}};
+	OccluderSettings simplified = settings;
 	if (settings.detail > 0.0)
 	{
 		const ProgressCounter stage(run.progress, "proxies");
 		OccluderCounts before;
 		const std::vector<uint8_t> two_sided = surfaceOf(soup, settings, run, before).two_sided;
-		const auto oriented = listOf(two_sided.size(), [&](std::size_t i)
-									 { return static_cast<uint8_t>(two_sided[i] == 0 && kindOf(soup, i) == 0 ? 1 : 0); });
-		proxies = proxiesOf(level, oriented, settings.detail * settings.distance_m, run);
+		// These stay oriented, although simplification may open a closed piece: a back would darken the surface that it lies over.
+		// So would a front where a closed piece is partly inside out, so backs must be idle if that is known.
+		const bool is_any = settings.one_sided.empty() || settings.sides != Sides::automatic;
+		const auto isOriented = [&](std::size_t i)
+		{
+			return two_sided[i] == 0 && kindOf(soup, i) == 0 && (is_any || settings.one_sided[i] != 0);
+		};
+		simplified.one_sided = listOf(two_sided.size(), [&](std::size_t i) { return static_cast<uint8_t>(isOriented(i) ? 1 : 0); });
+		proxies = proxiesOf(level, simplified.one_sided, settings.detail * settings.distance_m, run);
 		soup = {&level, proxies.triangles, proxies.materials, proxies.sources};
 		counts.deviation_m = proxies.deviation_m;
 	}
 	counts.proxies = soup.triangles.size();
 	std::optional<ProgressCounter> stage(std::in_place, run.progress, "surface");
-	const Surface surface = surfaceOf(soup, settings, run, counts);
+	const Surface surface = surfaceOf(soup, simplified, run, counts);
 	Merger merger(soup, settings, surface);
 	std::vector<Made> made((soup.triangles.size() + kSoupBlock - 1) / kSoupBlock);
 	stage.emplace(run.progress, "polygons", made.size());

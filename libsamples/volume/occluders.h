@@ -35,11 +35,12 @@ struct OccluderSettings
 	double extent = 2.0;
 	bool extent_always = false; // apply `extent` regardless of the number of polygons
 	double detail = 0.0;  // simplify opaque oriented surfaces first, by at most about this fraction of δ; 0: off; below 1. Not
-						  // two-sided ones: in front of them, proxies would have them as receivers
+						  // those with two sides that count: in front of them, proxies would have them as receivers
 	int gap_halvings = 0; // polygons with alpha masks are halved along their longer axis (squares along both) up to this often to
 						  // separate leaves from gaps, whose mean coverage would let light through everywhere alike
-	std::vector<uint8_t> one_sided{}; // with `detail` and Sides::automatic, per level triangle: not 0 for those that are oriented
-									  // although not closed (idleBacks); empty: none
+	std::vector<uint8_t> one_sided{}; // with `detail` and Sides::automatic, per level triangle: not 0 if backs are idle
+									  // (idleBacks), so that it is oriented although not closed; 0: it is not simplified; empty:
+									  // closed surfaces are
 	std::function<void(uint64_t)> before_cutting{}; // called with an upper bound of the polygons after cutting; may throw
 };
 

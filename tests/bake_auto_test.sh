@@ -36,7 +36,7 @@ for f in bumpy:
     print('f %d %d %d' % f)
 EOT
 works '' level kept_room.obj -o kept_room.glb
-# The same in one mesh, with the room between two halves of the patch.
+# A copy of this level in one mesh, with the room between two halves of the patch.
 awk '/^v/ { print } /^f/ { face[++n] = $0 } END { for (i = 13; i <= 1533; ++i) print face[i]
 	for (i = 1; i <= 12; ++i) print face[i]
 	for (i = 1534; i <= n; ++i) print face[i] }' kept_room.obj >kept_joined.obj

@@ -139,7 +139,7 @@ BakedPicture bakedPicture(const Tracer& tracer, const BakedValues& baked, const 
 // Where `fixed` shows the same surface as `gbuffer` (by that rule), copies its depth and normal exactly; returns 1 for such pixels.
 std::vector<uint8_t> alignStatic(GBuffer& fixed, const GBuffer& gbuffer);
 
-// Expects what `nook bake` adds to a level at the suggested distance with 256 rays per vertex, its default.
+// Estimates what `nook bake` adds to a level at the suggested distance with 256 rays per vertex, its default.
 AssetEstimate bakeEstimate(const Level& level, const LevelFacts& facts);
 
 } // namespace nook

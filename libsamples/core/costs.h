@@ -18,8 +18,8 @@ inline constexpr double kBuiltVolume_bytes = 1600.0;
 inline constexpr double kPixel_bytes = 150.0; // a G-buffer, values, the picture as it is written
 inline constexpr double kProgram_bytes = 2e8;
 
-// What `nook info` expects of `nook volumes --masks` and `nook bake` at the suggested distance (docs/measurements/bake.md, "What
-// nook info expects": the levels that these were fitted to, and others).
+// For the estimates of `nook info`: `nook volumes --masks` and `nook bake` at the suggested distance. docs/measurements/bake.md,
+// "What nook info expects", has the levels that these were fitted to, and others.
 inline constexpr double kMaskKept = 0.96;          // share of the polygons that darken something
 inline constexpr double kMaskCorner_bytes = 14.0;  // in the file: a corner and a triangle
 inline constexpr double kMaskPolygon_bytes = -1.7; // a polygon (8) and its part of a cluster (2.3), without two triangles (12)

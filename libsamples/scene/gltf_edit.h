@@ -174,11 +174,11 @@ GltfBaked bakeInto(const GltfFile& file, std::span<const GltfPlace> places, cons
 // Throws as bakeInto() does for what depends on the file alone, before there are values. `bake.charts`: not empty for charts.
 void checkTarget(const GltfFile& file, std::span<const GltfPlace> places, const GltfBake& bake);
 
-// What each place's primitive has.
+// A place's primitive: its bytes per vertex, and whether a part of its triangles can be drawn without new indices.
 struct GltfCost
 {
 	std::size_t vertex_bytes = 0; // in all its arrays
-	bool has_list = false;        // indices of a list of triangles, of which runs can be drawn
+	bool has_list = false;        // it has indices of a list of triangles: runs of them can be drawn
 };
 std::vector<GltfCost> costsOf(const GltfFile& file, std::span<const GltfPlace> places);
 

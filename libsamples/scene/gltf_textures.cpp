@@ -293,14 +293,14 @@ private:
 		const TriangleRuns kept = runsOf(remains);
 		std::vector<std::size_t> accessors =
 			mapped(kept.runs, [&](const auto& run) { return runOf(indices, run.first, run.second); });
-		std::vector<uint32_t> others;
-		const GltfValues values(m_editor.file, indices);
-		for (const std::size_t t : kept.others)
+		if (!kept.others.empty())
 		{
-			others.insert(others.end(), {values.index(3 * t), values.index(3 * t + 1), values.index(3 * t + 2)});
-		}
-		if (!others.empty())
-		{
+			const GltfValues values(m_editor.file, indices);
+			std::vector<uint32_t> others;
+			for (const std::size_t t : kept.others)
+			{
+				others.insert(others.end(), {values.index(3 * t), values.index(3 * t + 1), values.index(3 * t + 2)});
+			}
 			accessors.push_back(indicesOf(others, is_short));
 		}
 		return accessors;

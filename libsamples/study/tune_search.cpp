@@ -256,7 +256,7 @@ private:
 		return m_goal.budget_s ? m_made.tried[i].time_s / *m_goal.budget_s : m_made.tried[i].error / *m_goal.max_error;
 	}
 
-	// The same candidates, those with the least of a quantity first.
+	// Sorts candidates by a quantity, the least first.
 	std::vector<std::size_t> sorted(std::vector<std::size_t> list, double (HalvingSearch::*quantity)(std::size_t) const) const
 	{
 		std::stable_sort(list.begin(), list.end(),

@@ -148,7 +148,7 @@ struct TuneSearch
 TuneSearch searchCandidates(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings,
 							const MeasureTrial& measure, const Progress& progress = {});
 
-// The same measurements with pick, or nearest, and instead_of and runner_up set by the goal.
+// Returns the measurements with pick, or nearest, and instead_of and runner_up set by the goal.
 TuneSearch chooseOf(TuneSearch measured, const TuneGoal& goal, const TuneSearchSettings& settings);
 
 // Returns the front of those measured at this rung or a later one, by time.

@@ -110,8 +110,8 @@ void describeBuilt(const BuiltVolumes& built, const VolumeFile& file, const Volu
 // The volumes of a file.
 void describeVolumes(const VolumeSet& volumes, const VolumeFileFacts& file, Facts& to);
 
-// Expects what `nook volumes --masks` makes of a level at the suggested distance, from the polygons of a sample of its flat pieces.
-// The same for any number of threads.
+// Estimates the result of `nook volumes --masks` for a level at the suggested distance, from the polygons of a sample of its flat
+// pieces. Deterministic for any number of threads.
 AssetEstimate masksEstimate(const Level& level, const LevelFacts& facts, const RunSettings& run);
 
 } // namespace nook

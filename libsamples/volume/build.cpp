@@ -61,7 +61,7 @@ namespace
 constexpr int kGapHalvings = 5;                                 // of leaves in masks; tuned on a pine and a town with creepers
 constexpr std::ptrdiff_t kMostParts = std::ptrdiff_t{1} << 21U; // halvings of masked triangles end where they may become more
 constexpr double kMaskMore = 0.25;                              // increase of the masks' error that --detail auto allows
-constexpr double kMaskError = 0.012; // and an error that it allows in any case; in pictures 1.2 to 1.4 times as much (levels.md)
+constexpr double kMaskError = 0.010; // and an error that it allows in any case; in pictures 1.2 to 1.4 times as much (levels.md)
 constexpr int kMaskDirections = 128; // as aov-mask by default
 
 bool dropsAnything(const DropSettings& drop)
@@ -200,16 +200,17 @@ void dropFrom(BuiltVolumes& built, const Tracer& tracer, const VolumeSettings& s
 	set.occluders = std::move(dropped.occluders);
 }
 
-CompensateSettings compensation(const VolumeSettings& settings)
+CompensateSettings compensation(const VolumeSettings& settings, std::span<const uint8_t> idle_backs)
 {
 	CompensateSettings fit = *settings.compensate;
+	fit.idle_backs = idle_backs;
 	fit.ray_distance_m = settings.ray_distance_m > 0.0 ? settings.ray_distance_m : fit.ray_distance_m;
 	return fit;
 }
 
-void compensate(BuiltVolumes& built, const Tracer& tracer, const VolumeSettings& settings, const RunSettings& run)
+void compensate(BuiltVolumes& built, const Tracer& tracer, const CompensateSettings& settings, const RunSettings& run)
 {
-	built.compensated = compensateVolumes(built.set, tracer, compensation(settings), run);
+	built.compensated = compensateVolumes(built.set, tracer, settings, run);
 	built.set.compensation = built.compensated->curve;
 	built.set.ray_distance_m = built.compensated->ray_distance_m;
 }
@@ -223,6 +224,7 @@ void chooseDetailOf(BuiltVolumes& built, const Level& level, const Tracer& trace
 	choosing.exact_bounds = settings.exact_bounds;
 	choosing.fitted = settings.compensate.has_value();
 	choosing.masks = settings.masks;
+	choosing.receivers.idle_backs = occluding.one_sided;
 	runOnce(
 		"detail", [&] { built.detail = chooseDetail(level, tracer, occluding, choosing, withoutUnits(run)); },
 		[&](Archive& archive) { archive(built.detail); }, run);
@@ -240,8 +242,9 @@ int gapHalvings(const Level& level)
 	return halvings;
 }
 
-void findOccluders(BuiltVolumes& built, const Level& level, const Tracer* tracer, const VolumeSettings& settings,
-				   const RunSettings& run)
+// Returns the backs that do not darken because surfaces were simplified (idleBacks); empty: none.
+std::vector<uint8_t> findOccluders(BuiltVolumes& built, const Level& level, const Tracer* tracer, const VolumeSettings& settings,
+								   const RunSettings& run)
 {
 	OccluderSettings occluding = settings.occluders;
 	occluding.gap_halvings = settings.masks ? gapHalvings(level) : 0;
@@ -255,8 +258,10 @@ void findOccluders(BuiltVolumes& built, const Level& level, const Tracer* tracer
 	};
 	if (simplifies(settings) && settings.occluding == nullptr) // the tracer numbers the triangles of the whole level
 	{
+		occluding.tracer = tracer;
 		runOnce(
-			"backs", [&] { occluding.one_sided = idleBacks(*tracer, settings.distance_m, withoutUnits(run)); },
+			"backs",
+			[&] { occluding.one_sided = idleBacks(*tracer, settings.distance_m, settings.drop.visible_from, withoutUnits(run)); },
 			[&](Archive& archive) { archive(occluding.one_sided); }, run);
 	}
 	if (settings.detail_more)
@@ -271,6 +276,7 @@ void findOccluders(BuiltVolumes& built, const Level& level, const Tracer* tracer
 	built.set.occluders = std::move(occluders.occluders);
 	built.dropped.polygons = built.set.occluders.polygons.size();
 	built.dropped.kept = built.dropped.polygons;
+	return occluding.detail > 0.0 ? std::move(occluding.one_sided) : std::vector<uint8_t>{};
 }
 
 void trim(BuiltVolumes& built, const Tracer& tracer, const TrimSettings& trimming, const RunSettings& run)
@@ -318,8 +324,8 @@ public:
 		return m_points.size();
 	}
 
-	// Without simplification. Then leaves out the points that this gets wrong: they lie in gaps that nothing sees, whose polygons
-	// are dropped.
+	// Without simplification. Then leaves out points in gaps that nothing sees: those that this gets wrong, since the polygons of
+	// gaps are dropped, and those that surfaces enclose.
 	DetailTrial whole()
 	{
 		std::vector<double> values;
@@ -328,7 +334,8 @@ public:
 		std::size_t kept = 0;
 		for (std::size_t i = 0; i < values.size(); ++i)
 		{
-			if (std::fabs((curve ? curve->at(values[i]) : values[i]) - m_occlusions[i]) <= kMissed)
+			const double error = (curve ? curve->at(values[i]) : values[i]) - m_occlusions[i];
+			if (std::fabs(error) <= kMissed && m_occlusions[i] <= kEnclosed)
 			{
 				m_points[kept] = m_points[i];
 				m_occlusions[kept] = m_occlusions[i];
@@ -349,6 +356,7 @@ public:
 
 private:
 	static constexpr double kMissed = 0.2;
+	static constexpr double kEnclosed = 0.98;
 
 	// `values`: the sums of volumes at the points, or the occlusion by masks.
 	DetailTrial at(double share, std::vector<double>& values) const
@@ -496,7 +504,8 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& wanted, cons
 	{
 		tracer = std::make_unique<Tracer>(level, run);
 	}
-	findOccluders(built, settings.occluding != nullptr ? *settings.occluding : level, tracer.get(), settings, run);
+	const std::vector<uint8_t> idle_backs =
+		findOccluders(built, settings.occluding != nullptr ? *settings.occluding : level, tracer.get(), settings, run);
 	VolumeSet all;
 	if (settings.verify && (dropsAnything(settings.drop) || settings.trim))
 	{
@@ -510,7 +519,7 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& wanted, cons
 	{
 		if (settings.compensate)
 		{
-			compensationRays(*tracer, settings.distance_m, compensation(settings), run);
+			compensationRays(*tracer, settings.distance_m, compensation(settings, idle_backs), run);
 		}
 		return built;
 	}
@@ -523,7 +532,7 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& wanted, cons
 													   : set.distance_m / kPaperRayRatio;
 	if (settings.compensate)
 	{
-		compensate(built, *tracer, settings, run);
+		compensate(built, *tracer, compensation(settings, idle_backs), run);
 	}
 	if (settings.verify)
 	{

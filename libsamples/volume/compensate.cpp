@@ -558,7 +558,7 @@ std::size_t bestOf(std::span<const RatioTrial> trials)
 CompensationRays compensationRays(const Tracer& tracer, double distance_m, const CompensateSettings& settings,
 								  const RunSettings& run, ProgressCounter* progress)
 {
-	const ReceiverSettings receivers{settings.views, settings.per_view, settings.by_area, 0, settings.seed};
+	const ReceiverSettings receivers{settings.views, settings.per_view, settings.by_area, 0, settings.seed, settings.idle_backs};
 	CompensationRays rays;
 	rays.points = sampleReceivers(tracer, distance_m, receivers, run);
 	rays.ratios = settings.ray_distance_m > 0.0 ? std::vector<double>{distance_m / settings.ray_distance_m}

@@ -75,6 +75,7 @@ struct CompensateSettings
 	PictureSettings pictures;                  // for the final fit of the curve; without views it keeps the fit to points
 	CurveMeasure measure = CurveMeasure::rmse; // objective of that fit, which must also not get worse in held-out views
 	PictureSettings kept_out{4, 8, 400};       // held-out views, chosen after the others; none: accept any fit
+	std::span<const uint8_t> idle_backs{};     // as in ReceiverSettings
 };
 
 // Errors against rays at points that were not used for the fit.

@@ -4,7 +4,9 @@
 #include "core/error.h"
 #include "core/lists.h"
 #include "core/parallel.h"
+#include "scene/ray_triangle.h"
 #include "scene/topology.h"
+#include "scene/tracer.h"
 #include "volume/surface.h"
 #include "volume/volumes.h"
 
@@ -231,6 +233,75 @@ Proxies proxiesOf(const Level& level, std::span<const uint8_t> may_change, doubl
 		}
 	}
 	return proxies;
+}
+
+// True if the front of a simplified triangle would darken surfaces that face nothing there in the level: folds and steps that the
+// simplification made. From points of the triangle, rays look for fronts that lie across from it within `reach_m`, and rays back
+// from those for what they really face.
+bool facesFalsely(const Tracer& tracer, const std::array<glm::dvec3, 3>& corners, double reach_m)
+{
+	constexpr double kUp = 0.42;    // cosine of the slanted rays to the normal
+	constexpr double kAcross = 0.5; // greatest cosine between the normals of a receiver and of what darkens it much
+	constexpr int kFewRays = 3;
+	constexpr std::size_t kLook = 2; // points; the others follow if something is wrong there
+	constexpr std::array<glm::dvec3, 6> kPoints{
+		{{4.0, 1.0, 1.0}, {1.0, 4.0, 1.0}, {1.0, 1.0, 4.0}, {2.6, 2.6, 0.8}, {2.6, 0.8, 2.6}, {0.8, 2.6, 2.6}}};
+	const glm::dvec3 across = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+	const double area = glm::length(across);
+	if (!(area > 0.0))
+	{
+		return false;
+	}
+	const glm::dvec3 normal = across / area;
+	const glm::dvec3 s = std::sqrt(1.0 - kUp * kUp) * glm::normalize(corners[1] - corners[0]);
+	const glm::dvec3 t = glm::cross(normal, s);
+	const std::array<glm::dvec3, 5> ways{normal, kUp * normal + s, kUp * normal - s, kUp * normal + t, kUp * normal - t};
+	const double lift_m = 2.0 * tracer.error();
+	int wrong = 0;
+	int right = 0;
+	for (std::size_t i = 0; i < kPoints.size() && (i < kLook || wrong > 0); ++i)
+	{
+		const glm::dvec3 weights = kPoints[i] / 6.0;
+		const glm::dvec3 from = weights.x * corners[0] + weights.y * corners[1] + weights.z * corners[2] + lift_m * normal;
+		for (const glm::dvec3& way : ways)
+		{
+			const RayHit hit = tracer.nearest(from, way, reach_m);
+			const glm::dvec3 facing = hit.hit && hit.front ? glm::normalize(twiceAreaOf(tracer.level(), hit.triangle)) : normal;
+			if (glm::dot(facing, normal) < kAcross)
+			{
+				const glm::dvec3 receiver = from + hit.distance * way + lift_m * facing;
+				(tracer.nearest(receiver, -way, hit.distance + reach_m).hit ? right : wrong) += 1;
+			}
+		}
+	}
+	return wrong >= kFewRays && wrong > right;
+}
+
+void leaveOutFalse(Proxies& proxies, const Level& level, const Tracer& tracer, const RunSettings& run)
+{
+	constexpr double kReach = 3.0; // of how far the surface moved
+	std::vector<uint8_t> is_false(proxies.triangles.size());
+	inBlocks(is_false.size(), 256, run, "folds",
+			 [&](std::size_t i)
+			 {
+				 const glm::uvec3& t = proxies.triangles[i];
+				 const std::array<glm::dvec3, 3> corners{level.positions[t.x], level.positions[t.y], level.positions[t.z]};
+				 const bool is_new = t != level.triangles[proxies.sources[i]];
+				 is_false[i] = is_new && facesFalsely(tracer, corners, kReach * proxies.deviation_m) ? 1 : 0;
+			 });
+	std::size_t kept = 0;
+	for (std::size_t i = 0; i < is_false.size(); ++i)
+	{
+		if (is_false[i] == 0)
+		{
+			proxies.triangles[kept] = proxies.triangles[i];
+			proxies.materials[kept] = proxies.materials[i];
+			proxies.sources[kept++] = proxies.sources[i];
+		}
+	}
+	proxies.triangles.resize(kept);
+	proxies.materials.resize(kept);
+	proxies.sources.resize(kept);
 }
 
 constexpr std::size_t kSoupBlock = std::size_t{1} << 12U;
@@ -597,6 +668,10 @@ Occluding occludersOf(const Level& level, const OccluderSettings& settings, cons
 		};
 		simplified.one_sided = listOf(two_sided.size(), [&](std::size_t i) { return static_cast<uint8_t>(isOriented(i) ? 1 : 0); });
 		proxies = proxiesOf(level, simplified.one_sided, settings.detail * settings.distance_m, run);
+		if (settings.tracer != nullptr)
+		{
+			leaveOutFalse(proxies, level, *settings.tracer, run);
+		}
 		soup = {&level, proxies.triangles, proxies.materials, proxies.sources};
 		counts.deviation_m = proxies.deviation_m;
 	}

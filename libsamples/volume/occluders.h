@@ -14,6 +14,8 @@
 namespace nook
 {
 
+class Tracer;
+
 enum class Sides
 {
 	automatic, // opaque surfaces that are consistently wound and closed (up to small holes), with fronts outside, are oriented; all
@@ -38,6 +40,7 @@ struct OccluderSettings
 						  // those with two sides that count: in front of them, proxies would have them as receivers
 	int gap_halvings = 0; // polygons with alpha masks are halved along their longer axis (squares along both) up to this often to
 						  // separate leaves from gaps, whose mean coverage would let light through everywhere alike
+	const Tracer* tracer = nullptr;   // of the level, with `detail`: leaves out folds and steps that only simplification made
 	std::vector<uint8_t> one_sided{}; // with `detail` and Sides::automatic, per level triangle: not 0 if backs are idle
 									  // (idleBacks), so that it is oriented although not closed; 0: it is not simplified; empty:
 									  // closed surfaces are

@@ -264,16 +264,37 @@ template <class Visit> bool anyPoint(std::span<const glm::dvec3> corners, double
 }
 
 // Empty if no point of the level shows anything.
-std::vector<LevelCamera> chosenCameras(const Tracer& tracer, const RunSettings& run)
+std::vector<LevelCamera> chosenCameras(const Tracer& tracer, const RunSettings& run, int count = 8)
 {
 	try
 	{
-		return chooseCameras(tracer, 8, run);
+		return chooseCameras(tracer, count, run);
 	}
 	catch (const Error&)
 	{
 		return {};
 	}
+}
+
+// Places where a person can stand and mostly sees fronts; none if there are fewer than three.
+std::vector<Bounds> standingEyes(const Tracer& tracer, const RunSettings& run)
+{
+	std::vector<Bounds> eyes;
+	for (const LevelCamera& camera : chosenCameras(tracer, run, 12))
+	{
+		const glm::dvec3 eye(camera.world_from_camera[3]);
+		std::array<uint64_t, 2> sides{};
+		for (const uint64_t side :
+			 lookAround(tracer, std::vector<Bounds>{{eye, eye}}, camera.from_outside ? 0 : 1024, 5, run.threads))
+		{
+			sides[side % 2] += side != UINT64_MAX ? 1 : 0;
+		}
+		if (sides[0] > sides[1])
+		{
+			eyes.push_back({eye, eye});
+		}
+	}
+	return eyes.size() < 3 ? std::vector<Bounds>{} : eyes;
 }
 
 // A 16 : 9 grid of at least `count` points.
@@ -362,7 +383,8 @@ void addSurfaces(const Tracer& tracer, double distance_m, const ReceiverSettings
 			u *= 1.0 - v;
 		}
 		const std::size_t material = level.materials[triangle];
-		const bool back = level.material_list[material].two_sided || materials.oriented[material] == 0; // see receiverSides()
+		const bool back = (level.material_list[material].two_sided || materials.oriented[material] == 0) && // see receiverSides()
+						  (settings.idle_backs.empty() || settings.idle_backs[triangle] == 0);
 		const glm::dvec3 normal = across * ((back && random.below(2) == 0 ? -1.0 : 1.0) / area);
 		const glm::dvec3 position = pointOf({a, b, c}, u, v);
 		if (isOpen(tracer, materials, position, normal, static_cast<uint32_t>(points.size())))
@@ -514,12 +536,41 @@ ReceiverSides receiverSides(const Tracer& tracer, const SideSettings& settings, 
 	return sides;
 }
 
-std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, const RunSettings& run)
+std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::span<const Bounds> boxes, const RunSettings& run)
 {
-	constexpr double kNeeded = 0.005; // of a piece's area
+	constexpr double kNeeded = 0.005; // of a piece's area, or of the rays that hit it
+	constexpr std::size_t kLooks = 400'000;
+	constexpr double kFewest = 100.0; // rays that tell which sides of a piece people see
 	const Level& level = tracer.level();
 	const std::size_t count = level.triangles.size();
-	const ReceiverSides sides = receiverSides(tracer, {}, run);
+	SideSettings settings;
+	settings.boxes = boxes;
+	ReceiverSides sides = receiverSides(tracer, settings, run);
+	const std::vector<uint32_t> first = weldPositions(level.positions, run.threads);
+	Groups pieces(level.positions.size());
+	for (const glm::uvec3& t : level.triangles)
+	{
+		pieces.join(first[t.x], first[t.y]);
+		pieces.join(first[t.x], first[t.z]);
+	}
+	const auto pieceOf = [&](std::size_t i)
+	{
+		return pieces.rootOf(first[level.triangles[i].x]);
+	};
+	std::vector<glm::uvec2> met(level.positions.size(), glm::uvec2(0)); // by piece: rays that hit fronts and backs
+	const std::vector<Bounds> eyes = boxes.empty() ? standingEyes(tracer, run) : std::vector<Bounds>{};
+	for (const uint64_t side : lookAround(tracer, eyes, eyes.empty() ? 0 : kLooks, 4, run.threads))
+	{
+		if (side != UINT64_MAX)
+		{
+			met[pieceOf(side / 2)][static_cast<int>(side % 2)] += 1;
+		}
+	}
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		const glm::dvec2 rays(met[pieceOf(i)]);
+		sides.seen[i] &= rays.x >= kFewest && rays.y <= kNeeded * rays.x ? kFrontSeen : kFrontSeen | kBackSeen;
+	}
 	std::vector<double> areas(count);
 	std::vector<double> needed(count, 0.0);
 	inBlocks(count, 256, run, "backs",
@@ -533,21 +584,14 @@ std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, const Ru
 																		distance_m, static_cast<uint32_t>(i)));
 				 needed[i] = used ? areas[i] : 0.0;
 			 });
-	const std::vector<uint32_t> first = weldPositions(level.positions, run.threads);
-	Groups pieces(level.positions.size());
-	for (const glm::uvec3& t : level.triangles)
-	{
-		pieces.join(first[t.x], first[t.y]);
-		pieces.join(first[t.x], first[t.z]);
-	}
 	std::vector<glm::dvec2> sums(level.positions.size(), glm::dvec2(0.0)); // by piece: the area, and what is needed of it
 	for (std::size_t i = 0; i < count; ++i)
 	{
-		sums[pieces.rootOf(first[level.triangles[i].x])] += glm::dvec2(areas[i], needed[i]);
+		sums[pieceOf(i)] += glm::dvec2(areas[i], needed[i]);
 	}
 	const auto isIdle = [&](std::size_t i)
 	{
-		const glm::dvec2 sum = sums[pieces.rootOf(first[level.triangles[i].x])];
+		const glm::dvec2 sum = sums[pieceOf(i)];
 		return level.material_list[level.materials[i]].alpha_mode == AlphaMode::opaque && sum.y <= kNeeded * sum.x;
 	};
 	return listOf(count, [&](std::size_t i) { return static_cast<uint8_t>(isIdle(i) ? 1 : 0); });

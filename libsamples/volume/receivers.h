@@ -87,8 +87,9 @@ ReceiverSides receiverSides(const Tracer& tracer, const SideSettings& settings, 
 
 // Per triangle 1 if it is opaque and the backs of its piece of surface (connected by vertices) can go: but for half a percent of
 // the area no camera sees them, and they see no visible side within δ. So is the back of a cave, of a ground, of a scanned surface.
-// Sampled, at 32 rays a triangle or more.
-std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, const RunSettings& run);
+// Cameras are in the boxes; empty: anywhere, but backs are not seen if people who stand in the level see fronts of the piece
+// instead. Sampled, at 32 rays a triangle or more.
+std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::span<const Bounds> boxes, const RunSettings& run);
 
 // True if a ray from a point, lifted off its surface along the unit `normal`, first hits the sky, a front, or a back of a material
 // that is not oriented. Uses 8 directions of the hemisphere, rotated by `turn`. Inside a solid, rays hit only backs.
@@ -109,6 +110,7 @@ struct ReceiverSettings
 	int by_area = 4000;      // points on the visible sides of the triangles, uniform by area
 	int near_creases = 2000; // points next to triangles' edges, a hundredth of δ away
 	uint32_t seed = 1;
+	std::span<const uint8_t> idle_backs{}; // 1 for each triangle whose back is no receiver; empty: none
 };
 
 // Surface points that can be seen from outside solids, with the triangle's normal on that side.

@@ -332,13 +332,12 @@ struct GivenOptions
 		for (const auto& [name, value] : data->values)
 		{
 			const std::string start = "--" + name + "=";
-			const auto before =
-				std::find_if(words.begin(), words.end(), [&start](const std::string& word) { return word.starts_with(start); });
+			std::string* const before = firstWhere(words, [&start](const std::string& word) { return word.starts_with(start); });
 			if (name == "output")
 			{
 				endings.push_back(value);
 			}
-			else if (name == "patterns" && before != words.end())
+			else if (name == "patterns" && before != nullptr)
 			{
 				*before += "," + value;
 			}
@@ -419,7 +418,7 @@ struct Prepared
 		level = handles().find<LevelData>(handle, "level");
 		call.level = level->loaded;
 		words.push_back(level->name.empty() ? "arrays" : level->name);
-		words.insert(words.end(), level->words.begin(), level->words.end());
+		append(words, level->words);
 	}
 };
 
@@ -750,11 +749,8 @@ nook_status nook_run_visibility(const nook_level* level, const nook_array* posit
 		for (std::size_t i = 0; i < at.size(); ++i)
 		{
 			const std::optional<ReferencePoint> point = pointOf(at[i], about[i]);
-			if (!point)
-			{
-				throw Error(ExitCode::invalid_input,
-							"normals: row " + std::to_string(i) + ": found no direction, expected a vector that is not 0");
-			}
+			refuseIf(!point, "normals: row " + std::to_string(i) + ": found no direction, expected a vector that is not 0",
+					 ExitCode::invalid_input);
 			prepared.call.points.push_back(*point);
 		}
 	};
@@ -820,9 +816,8 @@ nook_status nook_result_array(const nook_result* result, const char* name, nook_
 		require(name, "name");
 		require(array, "array");
 		const auto data = handles().find<ResultData>(result, "result");
-		const auto found =
-			std::find_if(data->arrays.begin(), data->arrays.end(), [name](const MadeArray& made) { return made.name == name; });
-		refuseValueIf(found == data->arrays.end(), "array", name, "one that this result has (nook_result_name)");
+		const MadeArray* const found = firstWhere(data->arrays, [name](const MadeArray& made) { return made.name == name; });
+		refuseValueIf(found == nullptr, "array", name, "one that this result has (nook_result_name)");
 		*array = {found->data.get(), found->type, static_cast<int32_t>(found->shape.size()), {}};
 		std::copy(found->shape.begin(), found->shape.end(), array->shape);
 	};

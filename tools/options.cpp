@@ -39,18 +39,21 @@ std::vector<std::string> writtenBy(const Outputs& outputs)
 	return written;
 }
 
+// Not a level of the program's own, nor an input that is not given.
+bool isFile(const std::string& path)
+{
+	return !path.empty() && !path.starts_with(kBuiltinPrefix);
+}
+
 // The rule for those that were read; standard output depends on nothing.
 std::string depfileOf(const Outputs& outputs, const std::vector<std::string>& read)
 {
 	std::vector<std::string> targets = outputs.files;
 	std::erase(targets, "-");
 	std::vector<std::string> sources;
-	for (const std::string& path : read)
+	for (const std::string& path : itemsWhere(read, isFile))
 	{
-		if (!path.starts_with(kBuiltinPrefix) && std::find(sources.begin(), sources.end(), path) == sources.end())
-		{
-			sources.push_back(path);
-		}
+		addOnce(sources, path);
 	}
 	return depfileText(targets, sources);
 }
@@ -120,12 +123,9 @@ void checkDistinct(const std::vector<std::string>& written, const std::vector<st
 		return;
 	}
 	std::unordered_map<std::string, std::string> seen; // name by identity
-	for (const std::string& path : read)
+	for (const std::string& path : itemsWhere(read, isFile))
 	{
-		if (!path.starts_with(kBuiltinPrefix))
-		{
-			seen.try_emplace(fileIdentity(path), path);
-		}
+		seen.try_emplace(fileIdentity(path), path);
 	}
 	for (const std::string& path : written)
 	{
@@ -511,8 +511,7 @@ Outputs expanded(Outputs outputs, const std::function<std::vector<std::string>(c
 {
 	for (const std::string& file : std::exchange(outputs.files, {}))
 	{
-		const std::vector<std::string> files = filesOf(file);
-		outputs.files.insert(outputs.files.end(), files.begin(), files.end());
+		append(outputs.files, filesOf(file));
 	}
 	return outputs;
 }
@@ -544,7 +543,7 @@ void giveSamples(std::span<const Pattern> variants, std::vector<std::size_t> sha
 		{
 			points.insert(points.end(), &point.x, &point.x + columns);
 		}
-		weights.insert(weights.end(), variant.weights.begin(), variant.weights.end());
+		append(weights, variant.weights);
 	}
 	give<double>("weights", weights, shape);
 	shape.push_back(columns);

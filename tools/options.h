@@ -237,7 +237,7 @@ OptionRow threadsRow(int& threads);
 std::optional<WorkShare> shareOf(const std::string& text);
 
 // Before any work: refuses no output at all, endings that are not known, one file named twice (or also as input), folders that do
-// not take it, and names that a depfile cannot hold where there is to be one.
+// not take it, and names that a depfile cannot hold where there is to be one. Inputs that are not given are empty.
 void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endings, const std::vector<std::string>& inputs = {});
 
 // Likewise for verbs that need no output; and the check of names and folders alone.

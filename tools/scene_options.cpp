@@ -105,7 +105,7 @@ OptionRow partsRow(const std::string& name, std::vector<std::string>& patterns, 
 		const std::vector<std::string> parts = partsOf(text);
 		refuseValueIf(parts.empty() || std::find(parts.begin(), parts.end(), "") != parts.end(), option, text,
 					  "patterns of parts, commas between them: Lamp*,material:Glass");
-		patterns.insert(patterns.end(), parts.begin(), parts.end());
+		append(patterns, parts);
 	};
 	return {name, takesEach("PARTS", take), help, std::move(rules)};
 }

@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "core/words.h"
 #include "core/work_units.h"
+#include "format/pattern_file.h"
 #include "scene/camera_choice.h"
 #include "scene/level_glb.h"
 #include "scene/load_parts.h"
@@ -522,10 +523,9 @@ Made makeProbes(const BakeOptions& options, const BakeInput& input, Facts& facts
 		return {};
 	}
 	Made made;
-	for (const std::string& path : options.outputs.files)
-	{
-		made.bytes.push_back(formatOf(path, kProbeFormats) == ".glsl" ? probesGlsl(grid, kProgram) : probesKtx2(grid, kProgram));
-	}
+	made.bytes =
+		mapped(options.outputs.files, [&grid](const std::string& path)
+			   { return formatOf(path, kProbeFormats) == ".glsl" ? probesGlsl(grid, kProgram) : probesKtx2(grid, kProgram); });
 	const glm::dvec3 count(grid.count);
 	const glm::uvec3 along(grid.count);
 	give<uint8_t>("texels", grid.texels, {along.z, along.y, along.x, 4});
@@ -550,8 +550,6 @@ void run(BakeOptions& options, VerbProgress& progress)
 {
 	settleBake(options);
 	const bool probes = options.probes_m > 0.0;
-	std::vector<std::string> inputs{options.level.level, options.volumes, options.from};
-	std::erase(inputs, "");
 	const std::string ending = endingOf(options.level.level);
 	const bool is_gltf = ending == ".gltf" || ending == ".glb";
 	const bool replaces =
@@ -568,7 +566,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 				 : options.automatic      ? std::span<const std::string_view>(kAutoFormats)
 				 : options.texture_px > 0 ? std::span<const std::string_view>(kTextureFormats)
 										  : kBakeFormats,
-				 others(inputs));
+				 others({options.level.level, options.volumes, options.from}));
 	const RunSettings how = progress.start("bake", options.outputs.threads, options.outputs.progress);
 	options.level.load.undo_bake = t_call == nullptr;
 	LoadedLevel loaded = t_call != nullptr ? *t_call->level : loadLevel(options.level.level, options.level.load, how);
@@ -585,7 +583,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 		LoadSettings load = options.level.load;
 		load.ignore.clear(); // parts of the other level
 		detailed = loadLevel(options.from, load, how);
-		read.insert(read.end(), detailed->level.files.begin(), detailed->level.files.end());
+		append(read, detailed->level.files);
 	}
 	addInputs(read, how);
 	const bool in_place = takesValues(options.level.level, loaded.level);

@@ -83,9 +83,7 @@ void check(const CompareOptions& options)
 	{
 		outputs.files.push_back(options.diff);
 	}
-	std::vector<std::string> inputs{options.test, options.reference, options.mask};
-	std::erase(inputs, "");
-	checkAnyOutputs(outputs, kPictureFormats, inputs);
+	checkAnyOutputs(outputs, kPictureFormats, {options.test, options.reference, options.mask});
 }
 
 // Which pixels count; empty: all.

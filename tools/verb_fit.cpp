@@ -110,11 +110,8 @@ std::string linesOf(const FitReport& report)
 void run(FitOptions& options, VerbProgress& progress)
 {
 	std::vector<std::string> inputs = options.levels;
-	inputs.insert(inputs.end(), options.held_out.begin(), options.held_out.end());
-	if (!options.start.empty())
-	{
-		inputs.push_back(options.start);
-	}
+	append(inputs, options.held_out);
+	inputs.push_back(options.start);
 	checkOutputs(options.outputs, kFitFormats, inputs);
 	const RunSettings how = progress.start("fit", options.outputs.threads, options.outputs.progress);
 	options.settings.starts = startsOf(options);
@@ -126,7 +123,7 @@ void run(FitOptions& options, VerbProgress& progress)
 	std::vector<std::string> read;
 	for (const FitLevel& level : report.levels)
 	{
-		read.insert(read.end(), level.files.begin(), level.files.end());
+		append(read, level.files);
 	}
 	checkRead(options.outputs, read);
 	if (isShare(how))
@@ -134,10 +131,7 @@ void run(FitOptions& options, VerbProgress& progress)
 		return;
 	}
 	const std::string json = fitJson(report, fitCommand(options), NOOK_VERSION);
-	if (!options.start.empty())
-	{
-		read.push_back(options.start);
-	}
+	read.push_back(options.start);
 	writeOutputs(
 		options.outputs, [&](const std::string&) { return json; }, json, read, linesOf(report));
 }

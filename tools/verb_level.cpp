@@ -55,7 +55,7 @@ void addCameras(Level& level, int count, const RunSettings& settings)
 			 level.name + ": --cameras: found " + std::to_string(chosen.size()) + " views that show something, expected " +
 				 std::to_string(count),
 			 ExitCode::invalid_input);
-	level.cameras.insert(level.cameras.end(), chosen.begin(), chosen.end());
+	append(level.cameras, chosen);
 }
 
 std::vector<PlacedLevel> placesOf(const ConvertOptions& options)

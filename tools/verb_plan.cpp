@@ -151,8 +151,7 @@ void checkForFarm(const ParsedCommand& parsed, int shares)
 				 ", expected 1, since that verb has no --share",
 			 ExitCode::unsupported);
 	std::vector<std::string> written = parsed.values("-o");
-	const std::vector<std::string> json = parsed.values("--json");
-	written.insert(written.end(), json.begin(), json.end());
+	append(written, parsed.values("--json"));
 	refuseIf(written.empty(), "the command: found no -o FILE and no --json FILE, expected something to write");
 	refuseIf(std::find(written.begin(), written.end(), "-") != written.end(),
 			 "-: found standard output in the command, expected files");
@@ -502,8 +501,7 @@ void run(PlanOptions& options, VerbProgress&)
 	if (!options.dry_run)
 	{
 		writePlan(plan, folder);
-		const auto* const engine =
-			std::find_if(kEngines.begin(), kEngines.end(), [&](const Engine& e) { return e.name == plan.engine; });
+		const auto* const engine = firstWhere(kEngines, [&](const Engine& e) { return e.name == plan.engine; });
 		summary.text("start", engine->start);
 		text += folder + ": " + std::string(engine->start) + "\n";
 	}

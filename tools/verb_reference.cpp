@@ -205,12 +205,7 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 	const bool image = !options.gbuffer.empty();
 	const std::span<const std::string_view> formats = image ? std::span<const std::string_view>(kImageFormats) : kPointFormats;
 	const std::string input = image ? options.gbuffer : options.points;
-	std::vector<std::string> inputs{input};
-	if (!options.level.empty())
-	{
-		inputs.push_back(options.level);
-	}
-	checkOutputs(options.outputs, formats, inputs);
+	checkOutputs(options.outputs, formats, {input, options.level});
 	const RunSettings run_settings = progress.start("reference", options.outputs.threads, options.outputs.progress);
 
 	std::vector<std::string> read{input};
@@ -228,7 +223,7 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 		const std::optional<Vicinity> near = image ? reachOf(loaded->level, gbuffer, options.settings) : std::nullopt;
 		tracer.emplace(loaded->level, run_settings, near ? &*near : nullptr,
 					   chosenTriangles(loaded->level, options.occluders, "occluders"));
-		read.insert(read.end(), loaded->level.files.begin(), loaded->level.files.end());
+		append(read, loaded->level.files);
 		addLevelFacts(facts, *loaded);
 	}
 	addInputs(read, run_settings);

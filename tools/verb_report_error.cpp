@@ -174,10 +174,7 @@ void measure(const ErrorOptions& options, VerbProgress& progress)
 		return;
 	}
 	std::vector<std::string> read = counts.files;
-	if (baseline)
-	{
-		read.push_back(options.baseline);
-	}
+	read.push_back(options.baseline);
 	checkRead(options.outputs, read);
 	writePages(options, {&report, 1}, options.outputs.json.empty() ? "" : errorReportJson(report), read);
 
@@ -219,9 +216,8 @@ void runReport(ErrorOptions& options, VerbProgress& progress)
 {
 	settle(options);
 	std::vector<std::string> inputs = options.join;
-	inputs.insert(inputs.end(), options.settings.levels.begin(), options.settings.levels.end());
+	append(inputs, options.settings.levels);
 	inputs.push_back(options.baseline);
-	std::erase(inputs, "");
 	checkOutputs(options.outputs, kPages, inputs);
 	if (options.join.empty())
 	{

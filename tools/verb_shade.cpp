@@ -291,10 +291,7 @@ void settle(ShadeOptions& options)
 // Files that options name, but for those of what does not move.
 std::vector<std::string> filesOf(const ShadeOptions& options)
 {
-	std::vector<std::string> files{options.gbuffer, options.compose.pattern, isRecipeFile(options.recipe) ? options.recipe : "",
-								   options.compose.volumes};
-	std::erase(files, "");
-	return files;
+	return {options.gbuffer, options.compose.pattern, isRecipeFile(options.recipe) ? options.recipe : "", options.compose.volumes};
 }
 
 // Throws Error (usage) where options contradict each other.
@@ -318,7 +315,6 @@ void check(const ShadeOptions& options)
 	checkGBufferImport(options.import);
 	std::vector<std::string> inputs = filesOf(options);
 	inputs.insert(inputs.end(), {compose.bake, compose.fixed});
-	std::erase(inputs, "");
 	checkOutputs(options.outputs, kShadeFormats, inputs);
 	const bool alone = compose.screen && compose.volumes.empty() && compose.bake.empty() && !compose.shade.debug;
 	for (const std::string& path : options.outputs.files)
@@ -492,7 +488,7 @@ void run(ShadeOptions& options, VerbProgress& progress)
 								 : imageBytes(format == ".png", picture, bent, std::string(debugName(shade)), notes);
 	};
 	std::vector<std::string> read = filesOf(options);
-	read.insert(read.end(), drawn.files.begin(), drawn.files.end());
+	append(read, drawn.files);
 	const Facts facts = factsOf(options, gbuffer, drawn, picture);
 	writeOutputs(options.outputs, bytesOf, facts.json(), read);
 	if (options.timing && options.outputs.json != "-")

@@ -81,10 +81,7 @@ void run(TileOptions& options, VerbProgress& progress)
 			 std::string("--pattern: ") + (options.slice_domain ? "found with" : "missing without") +
 				 " --domain slice, expected one of them");
 	std::vector<std::string> inputs = filterFiles(options.filters);
-	if (!options.pattern.empty())
-	{
-		inputs.push_back(options.pattern);
-	}
+	inputs.push_back(options.pattern);
 	checkOutputs(options.outputs, tileFormats(), inputs);
 	const RunSettings settings = progress.start("tile", options.outputs.threads, options.outputs.progress);
 	const PatternFile file = baseOf(options);

@@ -192,25 +192,22 @@ void write(const TuneOptions& options, const TuneReport& report, const TuneText&
 {
 	NewFolders folders;
 	OutputSet files;
+	std::vector<std::string> paths;
 	if (!options.folder.empty())
 	{
 		std::error_code failed;
 		folders.make(options.folder, failed);
 		refuseIf(bool(failed), options.folder + ": " + failed.message(), ExitCode::file);
 		const std::filesystem::path folder(options.folder);
-		std::vector<std::string> paths{(folder / kPage).string()};
+		paths.push_back((folder / kPage).string());
 		files.add(paths.front(), tuneHtml(report, text));
 		for (std::size_t i = 0; text.emission != nullptr && i < text.emission->files.size(); ++i)
 		{
 			paths.push_back((folder / text.emission->files[i].name).string());
 			files.add(paths.back(), text.emission->files[i].bytes);
 		}
-		checkFiles(options, paths, &report);
 	}
-	else
-	{
-		checkFiles(options, {}, &report);
-	}
+	checkFiles(options, paths, &report);
 	addSide(files, options.outputs, options.outputs.json.empty() ? "" : tuneJson(report, text), {}, tuneLines(report, text));
 	files.commit();
 }

@@ -198,10 +198,8 @@ void run(VolumeOptions& options, VerbProgress& progress)
 	settle(options);
 	const DropSettings& drop = options.settings.drop;
 	const bool alone = !drop.no_receiver && !drop.sides && !drop.inside && drop.below <= 0.0 && !options.settings.compensate;
-	if (options.outputs.share && alone) // every share would do all of the work
-	{
-		refuse("--share: found with --no-drop and without --compensate, which leave nothing to share out, expected one run");
-	}
+	refuseIf(options.outputs.share && alone, // every share would do all of the work
+			 "--share: found with --no-drop and without --compensate, which leave nothing to share out, expected one run");
 	options.settings.written_bytes = writtenBytes(options.file.layout);
 	checkOutputs(options.outputs, kVolumeFormats, {options.level.level});
 	VolumeSettings& settings = options.settings;

@@ -10,7 +10,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <numeric>
 
 namespace nook
 {
@@ -290,7 +289,7 @@ void splitMarked(Level& level, std::vector<SurfaceSample>& samples, const EdgeMa
 				triangles.emplace_back(parts[i][0].vertex, parts[i][1].vertex, parts[i][2].vertex);
 				materials.push_back(level.materials[t]);
 				origins.push_back(split.origins[t]);
-				moved.insert(moved.end(), of_part[i].begin(), of_part[i].end());
+				append(moved, of_part[i]);
 				of_part[i].clear();
 			}
 		}
@@ -426,7 +425,7 @@ std::size_t topUp(const Tracer& tracer, const Level& level, std::vector<SurfaceS
 	std::vector<SurfaceSample> added = SamplePlaces(level, missing, seed).all();
 	traceSamples(tracer, level, added, settings, rays, seed, run, "rays");
 	const std::size_t before = samples.size();
-	samples.insert(samples.end(), added.begin(), added.end());
+	append(samples, added);
 	std::inplace_merge(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(before), samples.end(),
 					   [](const SurfaceSample& a, const SurfaceSample& b) { return a.triangle < b.triangle; });
 	return added.size();
@@ -439,8 +438,7 @@ VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const 
 	assert(settings.max_error > 0.0 && settings.fit == BakeFit::surface);
 	VertexBake bake;
 	Level& level = bake.refined.emplace(surfaceOf(tracer, settings));
-	bake.split.origins.resize(level.triangles.size());
-	std::iota(bake.split.origins.begin(), bake.split.origins.end(), 0U);
+	bake.split.origins = countingFrom(0U, level.triangles.size());
 	const int rays = std::min(settings.rays, kRaysOfPoint);
 	// Contact shadows begin with zero width, so subdivision would never end without a minimum edge length.
 	const double diagonal_m = glm::distance(tracer.bounds().least, tracer.bounds().most);

@@ -16,7 +16,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <tuple>
 
 namespace nook
@@ -107,8 +106,7 @@ constexpr int kSamplesAcross = 4; // per texel, in each direction
 // Joins vertices with the same position and coordinates.
 void joinVertices(const Level& level, std::span<const glm::vec2> uvs, Groups& groups)
 {
-	std::vector<uint32_t> order(uvs.size());
-	std::iota(order.begin(), order.end(), 0U);
+	std::vector<uint32_t> order = countingFrom(0U, uvs.size());
 	const auto key = [&](uint32_t v)
 	{
 		const glm::dvec3 p = level.positions[v];

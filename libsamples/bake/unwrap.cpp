@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/unwrap.h"
 
-#include "bake/texture.h"
 #include "core/lists.h"
 #include "core/words.h"
 #include "scene/ray_triangle.h"

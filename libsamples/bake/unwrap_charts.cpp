@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <queue>
 #include <tuple>
 #include <utility>
@@ -235,8 +234,7 @@ private:
 	// Joins triangles across edges that two of them share, in opposite directions. Repeated triangles join among themselves.
 	void link()
 	{
-		std::vector<uint32_t> order(m_triangles.size());
-		std::iota(order.begin(), order.end(), 0U);
+		std::vector<uint32_t> order = countingFrom(0U, m_triangles.size());
 		const auto key = [&](uint32_t t)
 		{
 			std::array<uint32_t, 4> corners{m_triangles[t].piece, m_triangles[t].corner.x, m_triangles[t].corner.y,
@@ -351,14 +349,8 @@ private:
 
 	static void addBorder(Cluster& cluster, uint32_t other, double length)
 	{
-		const auto found = std::find_if(cluster.neighbours.begin(), cluster.neighbours.end(),
-										[other](const auto& neighbour) { return neighbour.first == other; });
-		if (found != cluster.neighbours.end())
-		{
-			found->second += length;
-			return;
-		}
-		cluster.neighbours.emplace_back(other, length);
+		auto* const found = firstWhere(cluster.neighbours, [other](const auto& neighbour) { return neighbour.first == other; });
+		(found != nullptr ? *found : cluster.neighbours.emplace_back(other, 0.0)).second += length;
 	}
 
 	uint32_t join(uint32_t a, uint32_t b)
@@ -371,7 +363,7 @@ private:
 		cluster.left = a;
 		cluster.right = b;
 		std::vector<std::pair<uint32_t, double>> all = std::move(m_clusters[a].neighbours);
-		all.insert(all.end(), m_clusters[b].neighbours.begin(), m_clusters[b].neighbours.end());
+		append(all, m_clusters[b].neighbours);
 		std::sort(all.begin(), all.end());
 		for (const auto& [other, border] : all)
 		{

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Packs charts into pages: the largest first, each at the first row where its texels and their margin are free.
 #include "bake/unwrap.h"
+#include "core/lists.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <bit>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <tuple>
 
 namespace nook
@@ -215,8 +215,7 @@ std::optional<std::vector<ChartPlace>> packCharts(std::span<const FlatChart> cha
 	parallelFor(2 * scaled.size(), threads,
 				[&](std::size_t i)
 				{ shapes[i / 2][i % 2] = shapeOf(charts[scaled[i / 2].chart], sides[i / 2][i % 2], settings.margin_px); });
-	std::vector<uint32_t> order(shapes.size());
-	std::iota(order.begin(), order.end(), 0U);
+	std::vector<uint32_t> order = countingFrom(0U, shapes.size());
 	const auto key = [&](uint32_t i)
 	{
 		const auto [less, more] = std::minmax(shapes[i][0].width, shapes[i][0].height);

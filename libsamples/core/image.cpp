@@ -8,8 +8,6 @@
 #include "core/lists.h"
 #include "core/system.h"
 
-#include <algorithm>
-#include <array>
 #include <cassert>
 #include <csetjmp>
 #include <cstdio>
@@ -154,7 +152,7 @@ bool write(png_structp png, png_infop info, const PngPicture& picture, std::span
 std::string fileOf(const PngPicture& picture, const char* colours, const Notes& notes)
 {
 	Notes all{{"oiio:ColorSpace", colours}};
-	all.insert(all.end(), notes.begin(), notes.end());
+	append(all, notes);
 	std::vector<png_text> texts;
 	for (Note& note : all)
 	{

@@ -2,10 +2,8 @@
 #include "core/image_codec.h"
 
 #include "core/error.h"
-#include "core/file.h"
-#include "core/words.h"
+#include "core/lists.h"
 
-#include <algorithm>
 #include <array>
 
 namespace nook
@@ -65,9 +63,8 @@ std::size_t channelsOf(std::string_view bytes, const std::string& name)
 {
 	const uint64_t format = littleEndian(bytes, 12, 4);
 	const uint64_t scheme = littleEndian(bytes, 44, 4);
-	const auto* const plain =
-		std::find_if(kPlainFormats.begin(), kPlainFormats.end(), [&](const PlainFormat& known) { return known.code == format; });
-	refuseInputIf(scheme != 0 || plain == kPlainFormats.end(), name + ": KTX2", schemeName(scheme, format),
+	const auto* const plain = firstWhere(kPlainFormats, [&](const PlainFormat& known) { return known.code == format; });
+	refuseInputIf(scheme != 0 || plain == nullptr, name + ": KTX2", schemeName(scheme, format),
 				  "uncompressed ones, as `ktx transcode --target rgba8 IN.ktx2 OUT.ktx2` makes them", ExitCode::unsupported);
 	return plain->channels;
 }

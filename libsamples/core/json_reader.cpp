@@ -4,7 +4,6 @@
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/json_text.h"
-#include "core/lists.h"
 #include "core/text.h"
 
 #include <algorithm>

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace nook
@@ -57,6 +59,39 @@ template <class Wanted> std::vector<std::size_t> indicesWhere(std::size_t count,
 	return wanted;
 }
 
+// The first item that isWanted accepts, or null.
+template <class List, class Wanted> auto firstWhere(List&& list, const Wanted& isWanted)
+{
+	const auto found = std::find_if(std::begin(list), std::end(list), isWanted);
+	return found != std::end(list) ? &*found : nullptr;
+}
+
+// As many numbers, each one more than the one before it.
+template <class Number> std::vector<Number> countingFrom(Number first, std::size_t count)
+{
+	std::vector<Number> numbers(count);
+	std::iota(numbers.begin(), numbers.end(), first);
+	return numbers;
+}
+
+// Index of `item` in `list`; appends it if there is no equal one.
+template <class Item> std::size_t addOnce(std::vector<Item>& list, Item item)
+{
+	const auto same = std::find(list.begin(), list.end(), item);
+	const auto index = static_cast<std::size_t>(same - list.begin());
+	if (same == list.end())
+	{
+		list.push_back(std::move(item));
+	}
+	return index;
+}
+
+// Adds all items at the end.
+template <class Item, class List = std::vector<Item>> void append(std::vector<Item>& to, const List& items)
+{
+	to.insert(to.end(), std::begin(items), std::end(items));
+}
+
 // The texts of all items with `between` between them.
 template <class List, class Text> std::string joinedText(const List& list, std::string_view between, const Text& textOf)
 {
@@ -83,9 +118,9 @@ template <class List, class Value> auto sumOver(const List& list, const Value& v
 	}
 	return sum;
 }
-inline double sumOver(const std::vector<double>& list)
+template <class Number> Number sumOver(const std::vector<Number>& list)
 {
-	return sumOver(list, [](double value) { return value; });
+	return sumOver(list, [](const Number& value) { return value; });
 }
 
 // use(run) for each longest run of items that are the same as its first one.

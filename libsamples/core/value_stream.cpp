@@ -2,6 +2,7 @@
 #include "core/value_stream.h"
 
 #include "core/isolate.h"
+#include "core/lists.h"
 
 #include <algorithm>
 #include <array>
@@ -46,9 +47,8 @@ void serve(const WorkerStreams& streams, std::span<const WorkerFunction> functio
 	const bool ours = limitThisProcess(limited, limits.memory_bytes, limits.processor_s);
 	try
 	{
-		const auto found =
-			std::find_if(functions.begin(), functions.end(), [&](const WorkerFunction& one) { return one.name == name; });
-		refuseIf(found == functions.end(), name + ": found no such function in this worker, expected parts of nook of one build",
+		const auto* const found = firstWhere(functions, [&](const WorkerFunction& one) { return one.name == name; });
+		refuseIf(found == nullptr, name + ": found no such function in this worker, expected parts of nook of one build",
 				 ExitCode::runtime);
 		found->run(request, answer);
 		request.finish();

@@ -12,7 +12,6 @@
 #include <filesystem>
 #include <queue>
 #include <utility>
-#include <vector>
 
 namespace nook
 {
@@ -35,11 +34,6 @@ void computeAll(const WorkStage& stage, std::vector<std::size_t> units, std::spa
 					}
 					progress.finishOne();
 				});
-}
-
-std::vector<std::size_t> countingTo(std::size_t count)
-{
-	return listOf(count, [](std::size_t i) { return i; });
 }
 
 std::string keyFrom(std::span<const std::string> identity, std::span<const std::string> inputs, std::span<const std::string> hashes,
@@ -95,7 +89,7 @@ std::string headOf(const std::string& key, std::string_view value)
 
 std::vector<int> dealUnits(std::span<const double> costs, std::vector<double>& loads)
 {
-	std::vector<std::size_t> order = countingTo(costs.size());
+	std::vector<std::size_t> order = countingFrom(std::size_t{0}, costs.size());
 	std::sort(order.begin(), order.end(),
 			  [&](std::size_t a, std::size_t b)
 			  {
@@ -147,7 +141,7 @@ std::vector<std::size_t> WorkUnits::ownUnits(const WorkStage& stage, std::span<c
 {
 	if (!m_share)
 	{
-		return countingTo(stage.count);
+		return countingFrom(std::size_t{0}, stage.count);
 	}
 	std::vector<std::string> names(stage.count);
 	std::map<std::string, double> sums; // of groups without an owner; their order is that of their names
@@ -220,7 +214,7 @@ void runStage(const WorkStage& stage, const RunSettings& run)
 		run.units->run(stage, run);
 		return;
 	}
-	computeAll(stage, countingTo(stage.count), listOf(stage.count, stage.cost), run);
+	computeAll(stage, countingFrom(std::size_t{0}, stage.count), listOf(stage.count, stage.cost), run);
 }
 
 void runOnce(const std::string& name, const std::function<void()>& compute, const Visitor& pass, const RunSettings& run)

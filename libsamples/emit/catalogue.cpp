@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit/catalogue.h"
 
+#include "core/lists.h"
 #include "core/work_units.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
@@ -93,8 +94,7 @@ std::vector<CatalogueEntry> catalogueEntries()
 	std::vector<CatalogueEntry> all;
 	for (const Domain domain : {Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere})
 	{
-		const std::vector<CatalogueEntry> entries = catalogueEntries(domain, 1, kMaxCatalogueCount, true);
-		all.insert(all.end(), entries.begin(), entries.end());
+		append(all, catalogueEntries(domain, 1, kMaxCatalogueCount, true));
 	}
 	return all;
 }

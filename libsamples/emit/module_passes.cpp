@@ -51,7 +51,7 @@ ShadePlan planFor(const ModuleSettings& settings, const ModuleMethod& method)
 ShadePass methodPass(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	const ShadePlan plan = planFor(settings, method);
-	return *std::find_if(plan.passes.begin(), plan.passes.end(), [](const ShadePass& pass) { return pass.of_pixel; });
+	return *firstWhere(plan.passes, [](const ShadePass& pass) { return pass.of_pixel; });
 }
 
 std::string line(const std::string& text)
@@ -123,10 +123,8 @@ KernelReads readsOf(const MethodRow& row, const ShadeSettings& shade, const Shad
 		return {pass.block.table > 0 && pass.block.uniform_layers == 0 ? 2 * pixels : pixels, 0};
 	}
 	const bool first = pass.level == 0; // later levels read the previous one
-	const auto found =
-		std::find_if(kFilterReads.begin(), kFilterReads.end(), [call](const FilterReads& one) { return call == one.call; });
-	return found != kFilterReads.end() && first ? KernelReads{found->reads.depths, normals ? found->reads.normals : 0}
-												: KernelReads{};
+	const auto* const found = firstWhere(kFilterReads, [call](const FilterReads& one) { return call == one.call; });
+	return found != nullptr && first ? KernelReads{found->reads.depths, normals ? found->reads.normals : 0} : KernelReads{};
 }
 
 // Includes the values packed for later passes; a reconstructed normal reads nine depths.
@@ -465,7 +463,7 @@ std::vector<ModulePass> mainPasses(const ModuleSettings& settings)
 std::string entryOf(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	const std::vector<ModuleEntry> entries = entriesOf(settings, method);
-	return std::find_if(entries.begin(), entries.end(), [](const ModuleEntry& entry) { return entry.of_pixel; })->call;
+	return firstWhere(entries, [](const ModuleEntry& entry) { return entry.of_pixel; })->call;
 }
 
 bool hasBentNormals(const ModuleSettings& settings, const ModuleMethod& method)

@@ -391,17 +391,17 @@ std::string exportedName(const MethodRow& row)
 }
 
 // The values that a method's settings are preset to, one per line.
-std::string presetLines(const ModuleSettings& settings, const ModuleMethod& method, const char* before, const char* between)
+std::string presetLines(const ModuleSettings& settings, const ModuleMethod& method, const char* between)
 {
 	return joinedText(presetsOf(settings, method), "",
-					  [&](const auto& preset) { return before + preset.first + between + preset.second + ",\n"; });
+					  [&](const auto& preset) { return "\t\t\t" + preset.first + between + preset.second + ",\n"; });
 }
 
 std::string reachText(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	return "\t/**\n\t * " + settingsMeaning(method) +
 		   "\n\t * @param {number} reach\n\t * @returns {Settings}\n\t */\n\tsettings(reach) {\n\t\treturn {\n" +
-		   presetLines(settings, method, "\t\t\t", ": ") + "\t\t};\n\t},\n";
+		   presetLines(settings, method, ": ") + "\t\t};\n\t},\n";
 }
 
 // The texels of a tile, one per line.
@@ -574,7 +574,7 @@ std::string moduleSharp(const ModuleSettings& settings, const EmitContext& conte
 		const std::string stem = stemOf(rowOf(method.method));
 		text += "\n\t// " + settingsMeaning(method) + "\n\tpublic static nook_settings " + stem +
 				"_settings(double reach)\n\t{\n\t\treturn new nook_settings\n\t\t{\n";
-		text += presetLines(settings, method, "\t\t\t", " = ");
+		text += presetLines(settings, method, " = ");
 		text += "\t\t};\n\t}\n";
 		if (fromTexture(settings, method))
 		{

@@ -5,7 +5,6 @@
 #include "core/image.h"
 #include "core/lists.h"
 #include "core/round.h"
-#include "core/text.h"
 #include "format/tile_json.h"
 
 #include <algorithm>
@@ -258,8 +257,7 @@ Source sourceOf(const PatternTile& tile, const TileQuality& quality, const EmitC
 		stem + "_points", macro + "_TOTAL", sampleComment(tile.domain) + " in each variant; index = variant * COUNT + sample", {}};
 	for (const Pattern& variant : tile.variants)
 	{
-		const std::vector<Sample> samples = samplesOf(variant);
-		points.rows.insert(points.rows.end(), samples.begin(), samples.end());
+		append(points.rows, samplesOf(variant));
 	}
 	source.arrays.push_back(std::move(points));
 	return source;

@@ -451,20 +451,10 @@ void requireSchema(const JsonValue& root, const char* schema)
 
 void readHead(const JsonValue& root, std::string& command, std::string& version)
 {
-	for (const auto& [field, target] : {std::pair{"command", &command}, std::pair{"version", &version}})
-	{
-		if (root.has(field))
-		{
-			*target = root.at(field).string();
-		}
-	}
-	for (const char* field : {"comment", "SPDX-License-Identifier"})
-	{
-		if (root.has(field))
-		{
-			root.at(field).string();
-		}
-	}
+	command = root.text("command");
+	version = root.text("version");
+	root.text("comment");
+	root.text("SPDX-License-Identifier");
 }
 
 Pattern readSamples(const JsonValue& object, Domain domain, bool weights_given)

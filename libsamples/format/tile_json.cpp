@@ -26,7 +26,11 @@ std::string filtersJson(const TileRecipe& recipe)
 	{
 		return {};
 	}
-	nlohmann::ordered_json filters = mapped(recipe.filters, [](const TileFilter& filter) { return filterJson(filter); });
+	const auto fieldsOf = [](const TileFilter& filter) -> nlohmann::ordered_json
+	{
+		return {{"name", filter.name}, {"share", filter.share}, {"width", filter.width}, {"taps", filter.taps}};
+	};
+	const nlohmann::ordered_json filters = mapped(recipe.filters, fieldsOf);
 	return ",\n\t\t\"filters\": " + jsonLine(filters) + ",\n\t\t\"robust\": " + (recipe.robust ? "true" : "false") +
 		   ",\n\t\t\"frames\": " + std::to_string(recipe.frames) + ",\n\t\t\"ema\": " + doubleText(recipe.ema) +
 		   ",\n\t\t\"moves\": " + (recipe.moves ? "true" : "false");
@@ -38,6 +42,32 @@ std::string recipeJson(const TileRecipe& recipe)
 		   ",\n\t\t\"lambda\": " + doubleText(recipe.lambda) + ",\n\t\t\"starts\": " + std::to_string(recipe.starts) +
 		   ",\n\t\t\"seed\": " + std::to_string(recipe.seed) + filtersJson(recipe) +
 		   (recipe.progressive ? ",\n\t\t\"progressive\": true" : "") + "\n\t}";
+}
+
+// Returns the sum; throws if negative taps cancel it, which leaves no mean.
+double checkedSum(const JsonValue& taps, const std::vector<double>& numbers)
+{
+	const double sum = sumOver(numbers);
+	const double below = sumOver(numbers, [](double tap) { return tap < 0.0 ? -tap : 0.0; });
+	failIf(!(sum > below) || sum > 1e9, taps,
+		   "taps with the sum " + numberText(sum) + ", " + numberText(-below) + " of it negative",
+		   "a sum above what the negative ones take away, at most 1e9");
+	return sum;
+}
+
+TileFilter readFilterFields(const JsonValue& object)
+{
+	object.allowOnly({"name", "share", "width", "taps"});
+	const auto width = static_cast<std::size_t>(object.at("width").integer(1, kMaxTaps));
+	const JsonValue taps = object.at("taps");
+	const std::size_t count = taps.arraySize();
+	taps.require(!(count < 1 || count % width != 0 || count / width > kMaxTaps),
+				 "rows of " + std::to_string(width) + " numbers, at most " + std::to_string(kMaxTaps));
+	std::vector<double> numbers = listOf(count, [&taps](std::size_t i) { return taps.at(i).number(); });
+	checkedSum(taps, numbers);
+	TileFilter filter{object.at("name").string(), object.at("share").number(), static_cast<int>(width), std::move(numbers)};
+	object.at("share").require(filter.share > 0.0 && filter.share <= 1e6, "a number above 0, at most 1e6");
+	return filter;
 }
 
 TileRecipe readRecipe(const JsonValue& object, const PatternTile& tile)
@@ -80,33 +110,18 @@ std::array<double, 4> numbersOf(const TileTransform& t, Domain domain)
 								  : std::array{t.cos, t.sin, t.scale, t.handedness};
 }
 
-TileTransform transformOf(const std::array<double, 4>& n, Domain domain)
-{
-	TileTransform t;
-	if (domain == Domain::ball)
-	{
-		t.axis = {n[0], n[1], n[2]};
-		t.scale = n[3];
-		return t;
-	}
-	t.cos = n[0];
-	t.sin = n[1];
-	t.scale = n[2];
-	t.handedness = n[3];
-	return t;
-}
-
 TileTransform readTransform(const JsonValue& value, Domain domain)
 {
 	value.require(value.arraySize() == 4, "an array of 4 numbers");
-	const TileTransform t =
-		transformOf({value.at(0).number(), value.at(1).number(), value.at(2).number(), value.at(3).number()}, domain);
+	const std::array<double, 4> n{value.at(0).number(), value.at(1).number(), value.at(2).number(), value.at(3).number()};
+	const TileTransform t = domain == Domain::ball ? TileTransform{.scale = n[3], .axis = {n[0], n[1], n[2]}}
+												   : TileTransform{.cos = n[0], .sin = n[1], .scale = n[2], .handedness = n[3]};
 	const bool unit = domain == Domain::ball
 						  ? std::fabs(t.axis.x * t.axis.x + t.axis.y * t.axis.y + t.axis.z * t.axis.z - 1.0) <= 1e-5
 						  : std::fabs(t.cos * t.cos + t.sin * t.sin - 1.0) <= 1e-5 && std::fabs(t.handedness) == 1.0;
-	value.require(!(!unit || !(t.scale > 0.0)),
-				  domain == Domain::ball ? "a unit direction and a scale above 0"
-										 : "the cosine and sine of an angle, a scale above 0 and a handedness of 1 or -1");
+	value.require(unit && t.scale > 0.0, domain == Domain::ball
+											 ? "a unit direction and a scale above 0"
+											 : "the cosine and sine of an angle, a scale above 0 and a handedness of 1 or -1");
 	return t;
 }
 
@@ -163,17 +178,6 @@ void readVariants(const JsonValue& root, std::size_t count, PatternTile& tile)
 	tile.transforms = listOf(number, [&](std::size_t i) { return readTransform(transforms.at(i), tile.domain); });
 }
 
-// Returns the sum; throws if negative taps cancel it, which leaves no mean.
-double checkedSum(const JsonValue& taps, const std::vector<double>& numbers)
-{
-	const double sum = sumOver(numbers);
-	const double below = sumOver(numbers, [](double tap) { return tap < 0.0 ? -tap : 0.0; });
-	failIf(!(sum > below) || sum > 1e9, taps,
-		   "taps with the sum " + numberText(sum) + ", " + numberText(-below) + " of it negative",
-		   "a sum above what the negative ones take away, at most 1e9");
-	return sum;
-}
-
 constexpr std::string_view kFile = "file:";
 
 } // namespace
@@ -217,10 +221,7 @@ TileFile parseTileJson(const std::string& text, const std::string& path)
 	readFrames(root, file.tile);
 	readVariants(root, static_cast<std::size_t>(root.at("count").integer(1, kMaxCount)), file.tile);
 	readHead(root, file.command, file.version);
-	if (root.has("base_command"))
-	{
-		file.base_command = root.at("base_command").string();
-	}
+	file.base_command = root.text("base_command");
 	if (root.has("quality"))
 	{
 		file.quality = readMeasures<TileQuality>(root.at("quality"));
@@ -288,31 +289,6 @@ FilterFile parseFilter(const std::string& text, const std::string& path)
 	return {tileFilterOf("file:" + nativePath(path).filename().string(), static_cast<int>(width), std::move(taps)), sum};
 }
 
-FilterFile readFilter(const std::string& path)
-{
-	return parseFilter(readFile(path), path);
-}
-
-nlohmann::ordered_json filterJson(const TileFilter& filter)
-{
-	return {{"name", filter.name}, {"share", filter.share}, {"width", filter.width}, {"taps", filter.taps}};
-}
-
-TileFilter readFilterFields(const JsonValue& object)
-{
-	object.allowOnly({"name", "share", "width", "taps"});
-	const auto width = static_cast<std::size_t>(object.at("width").integer(1, kMaxTaps));
-	const JsonValue taps = object.at("taps");
-	const std::size_t count = taps.arraySize();
-	taps.require(!(count < 1 || count % width != 0 || count / width > kMaxTaps),
-				 "rows of " + std::to_string(width) + " numbers, at most " + std::to_string(kMaxTaps));
-	std::vector<double> numbers = listOf(count, [&taps](std::size_t i) { return taps.at(i).number(); });
-	checkedSum(taps, numbers);
-	TileFilter filter{object.at("name").string(), object.at("share").number(), static_cast<int>(width), std::move(numbers)};
-	object.at("share").require(filter.share > 0.0 && filter.share <= 1e6, "a number above 0, at most 1e6");
-	return filter;
-}
-
 std::vector<TileFilter> filtersOf(const std::vector<std::string>& names, std::vector<std::string>& warnings)
 {
 	std::vector<TileFilter> filters;
@@ -322,7 +298,7 @@ std::vector<TileFilter> filtersOf(const std::vector<std::string>& names, std::ve
 		if (name.starts_with(kFile))
 		{
 			const std::string path = name.substr(kFile.size());
-			FilterFile file = readFilter(path);
+			FilterFile file = parseFilter(readFile(path), path);
 			if (std::fabs(file.sum - 1.0) > 1e-6)
 			{
 				warnings.push_back(path + ": taps: found the sum " + roundedText(file.sum, 6) + ", divided by it");

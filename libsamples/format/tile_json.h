@@ -51,12 +51,7 @@ struct FilterFile
 };
 
 // Throws Error (invalid input) naming `path`, also if the negative taps cancel the sum.
-FilterFile readFilter(const std::string& path);
 FilterFile parseFilter(const std::string& text, const std::string& path);
-
-// The fields of a filter in a tile's recipe: name, share, width, taps.
-nlohmann::ordered_json filterJson(const TileFilter& filter);
-TileFilter readFilterFields(const JsonValue& object);
 
 // NAME or NAME@SHARE each, where "file:KERNEL.json" is read; a warning for each whose taps do not sum to 1. Throws Error.
 std::vector<TileFilter> filtersOf(const std::vector<std::string>& names, std::vector<std::string>& warnings);

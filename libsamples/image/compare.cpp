@@ -72,11 +72,7 @@ void pointwise(Comparison& result, const VisibilityPlane& test, const Visibility
 						}
 					}
 				});
-	RowErrors sum;
-	for (const RowErrors& row : rows)
-	{
-		sum += row;
-	}
+	const RowErrors sum = sumOver(rows);
 	assert(sum.error.count > 0);
 	const auto count = static_cast<double>(sum.error.count);
 	result.pixels = sum.error.count;
@@ -130,13 +126,12 @@ struct Kernel
 // exp(−x²/(2σ²)), normalised to sum 1.
 Kernel gaussianKernel(double sigma_px, int radius)
 {
-	Kernel kernel{radius, {}};
-	double sum = 0.0;
-	for (int i = -radius; i <= radius; ++i)
+	const auto weightOf = [&](int i)
 	{
-		kernel.weights.push_back(expOf(-0.5 * i * i / (sigma_px * sigma_px)));
-		sum += kernel.weights.back();
-	}
+		return expOf(-0.5 * i * i / (sigma_px * sigma_px));
+	};
+	Kernel kernel{radius, mapped(countingFrom(-radius, 2 * static_cast<std::size_t>(radius) + 1), weightOf)};
+	const double sum = sumOver(kernel.weights);
 	for (double& weight : kernel.weights)
 	{
 		weight /= sum;
@@ -295,7 +290,7 @@ std::optional<double> meanSsim(const VisibilityPlane& test, const VisibilityPlan
 					}
 					progress.finishOne();
 				});
-	const PixelTally sum = sumOver(rows, [](const PixelTally& row) { return row; });
+	const PixelTally sum = sumOver(rows);
 	return sum.count == 0 ? std::nullopt : std::optional(sum.sum / static_cast<double>(sum.count));
 }
 
@@ -427,10 +422,7 @@ std::vector<double> strength(const Band& band, const RowSource& source, const Ke
 {
 	std::vector<double> x = filteredBand(band, source, along, across);
 	const std::vector<double> y = filteredBand(band, source, across, along);
-	for (std::size_t i = 0; i < x.size(); ++i)
-	{
-		x[i] = std::sqrt(x[i] * x[i] + y[i] * y[i]);
-	}
+	std::transform(x.begin(), x.end(), y.begin(), x.begin(), [](double a, double b) { return std::sqrt(a * a + b * b); });
 	return x;
 }
 
@@ -441,11 +433,8 @@ Seen seen(const Band& band, const VisibilityPlane& plane, const Filters& filters
 	const int top = std::max(0, band.first - reach);
 	const int bottom = std::min(band.height_px, band.last + reach);
 	const auto width = static_cast<std::size_t>(band.width_px);
-	std::vector<double> linear(static_cast<std::size_t>(bottom - top) * width);
-	for (std::size_t i = 0; i < linear.size(); ++i)
-	{
-		linear[i] = linearOf(static_cast<double>(plane.values[static_cast<std::size_t>(top) * width + i]));
-	}
+	const auto rows = plane.values.subspan(static_cast<std::size_t>(top) * width, static_cast<std::size_t>(bottom - top) * width);
+	const std::vector<double> linear = mapped(rows, [](float value) { return linearOf(static_cast<double>(value)); });
 	const RowSource source = [&](int y, std::span<double> row)
 	{
 		std::copy_n(linear.begin() + (y - top) * band.width_px, row.size(), row.begin());
@@ -569,7 +558,7 @@ double meanFlip(const VisibilityPlane& test, const VisibilityPlane& reference, s
 					}
 					progress.finishOne();
 				});
-	const PixelTally sum = sumOver(rows, [](const PixelTally& row) { return row; });
+	const PixelTally sum = sumOver(rows);
 	return sum.sum / static_cast<double>(sum.count);
 }
 

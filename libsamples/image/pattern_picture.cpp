@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 namespace nook
@@ -152,14 +151,10 @@ void addCells(Drawing& drawing, const PictureFrame& frame, const std::vector<Cel
 	addCircle(drawing, frame.centre, frame.radius_px, {}, kInk, std::max(1.0, 0.008 * frame.radius_px));
 }
 
-void addDot(Drawing& drawing, const glm::dvec2& at, double radius)
+// A colour bar with labelled ends, centred below `top`.
+void addLegend(Drawing& drawing, const glm::dvec2& top, const WeightScale& scale)
 {
-	addCircle(drawing, at, radius, kInk);
-}
-
-// A colour bar with labelled ends, `width` wide and centred below `top`.
-void addLegend(Drawing& drawing, const glm::dvec2& top, double width, const WeightScale& scale)
-{
+	const double width = 200.0;
 	const double height = 10.0;
 	if (scale.range <= 0.0)
 	{
@@ -247,7 +242,7 @@ void addDots(Drawing& drawing, const PictureFrame& frame, const Pattern& pattern
 {
 	for (const glm::dvec3& p : pattern.points)
 	{
-		addDot(drawing, frame.at(glm::dvec2(p)), dotRadius(frame, pattern.count()));
+		addCircle(drawing, frame.at(glm::dvec2(p)), dotRadius(frame, pattern.count()), kInk);
 	}
 }
 
@@ -260,7 +255,7 @@ void addSlices(Drawing& drawing, const PictureFrame& frame, const Pattern& patte
 		const SinCos turn = sinCosOf(kPi * p.x);
 		const glm::dvec2 along(turn.cos, turn.sin);
 		addLine(drawing, {frame.at(-along), frame.at(along)}, kBorder, 1.2);
-		addDot(drawing, frame.at(p.y * along), dotRadius(frame, std::max<std::size_t>(pattern.count(), 8)));
+		addCircle(drawing, frame.at(p.y * along), dotRadius(frame, std::max<std::size_t>(pattern.count(), 8)), kInk);
 	}
 }
 
@@ -273,7 +268,7 @@ void addSphereView(Drawing& drawing, const PictureFrame& frame, const Pattern& p
 		const glm::dvec3 seen = p * view;
 		if (seen.z > 0.0)
 		{
-			addDot(drawing, frame.at(glm::dvec2(seen)), dotRadius(frame, (pattern.count() + 1) / 2));
+			addCircle(drawing, frame.at(glm::dvec2(seen)), dotRadius(frame, (pattern.count() + 1) / 2), kInk);
 		}
 	}
 }
@@ -300,8 +295,7 @@ void addBead(Drawing& drawing, const PictureFrame& frame, const glm::dvec3& seen
 void addBeads(Drawing& drawing, const PictureFrame& frame, const Pattern& pattern, const glm::dmat3& view, const WeightScale& scale)
 {
 	addCircle(drawing, frame.centre, frame.radius_px, colourOf(0xf3f1eb), kInk, 1.6);
-	std::vector<std::size_t> order(pattern.count());
-	std::iota(order.begin(), order.end(), std::size_t{0});
+	std::vector<std::size_t> order = countingFrom(std::size_t{0}, pattern.count());
 	const auto depth = [&](std::size_t i)
 	{
 		return (pattern.points[i] * view).z;
@@ -355,7 +349,7 @@ Drawing pairPicture(const Pattern& pattern, const std::string& title, const std:
 		label(right, "back");
 		addSphereView(drawing, left, pattern, front, scale);
 		addSphereView(drawing, right, pattern, {-front[0], front[1], -front[2]}, scale);
-		addLegend(drawing, {480.0, 536.0}, 200.0, scale);
+		addLegend(drawing, {480.0, 536.0}, scale);
 		return drawing;
 	}
 	label(left, "points, size by weight");
@@ -363,7 +357,7 @@ Drawing pairPicture(const Pattern& pattern, const std::string& title, const std:
 	addBeads(drawing, left, pattern, front, scale);
 	addCells(drawing, right, sectionPolygons(pattern), pattern, scale);
 	addShells(drawing, {150.0, 546.0}, 200.0, pattern);
-	addLegend(drawing, {710.0, 538.0}, 200.0, scale);
+	addLegend(drawing, {710.0, 538.0}, scale);
 	return drawing;
 }
 
@@ -467,7 +461,7 @@ Drawing patternPicture(const Pattern& pattern, const Recipe* recipe, const Quali
 	const PictureFrame frame{{256.0, 298.0}, 214.0};
 	addCells(drawing, frame, planeCellPolygons(pattern), pattern, scale);
 	addDots(drawing, frame, pattern);
-	addLegend(drawing, {256.0, 536.0}, 200.0, scale);
+	addLegend(drawing, {256.0, 536.0}, scale);
 	return drawing;
 }
 
@@ -506,11 +500,10 @@ Drawing tilePicture(const PatternTile& tile, const TileQuality& quality)
 		addCells(drawing, frame, planeCellPolygons(variant), variant, scale);
 		addDots(drawing, frame, variant);
 	}
-	if (tile.domain == Domain::slice)
+	if (tile.domain != Domain::slice) // whose weights are equal
 	{
-		return drawing; // all weights are equal
+		addLegend(drawing, {340.0, 748.0}, scale);
 	}
-	addLegend(drawing, {340.0, 748.0}, 200.0, scale);
 	return drawing;
 }
 
@@ -543,7 +536,6 @@ std::string differencePng(const VisibilityPlane& test, const VisibilityPlane& re
 	const int height = test.height_px * factor;
 	const std::vector<uint8_t> picture = colours(test, reference, counted, range);
 	const std::vector<uint8_t> strip = legend(width, range);
-	const std::array<uint8_t, 3> paper{byteOf(kBackground.red), byteOf(kBackground.green), byteOf(kBackground.blue)};
 	std::vector<uint8_t> rgb;
 	rgb.reserve(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height) + strip.size());
 	const int margin = (width - test.width_px * factor) / 2;
@@ -554,11 +546,11 @@ std::string differencePng(const VisibilityPlane& test, const VisibilityPlane& re
 			const int from = (x - margin) / factor;
 			const bool inside = x >= margin && from < test.width_px;
 			const auto pixel = static_cast<std::ptrdiff_t>(3) * (y / factor * test.width_px + (inside ? from : 0));
-			const auto first = inside ? picture.begin() + pixel : picture.end();
-			inside ? rgb.insert(rgb.end(), first, first + 3) : rgb.insert(rgb.end(), paper.begin(), paper.end());
+			append(rgb, kBackground);
+			std::copy_n(picture.begin() + pixel, inside ? 3 : 0, rgb.end() - 3);
 		}
 	}
-	rgb.insert(rgb.end(), strip.begin(), strip.end());
+	append(rgb, strip);
 	return pngBytes(width, height + kLegendHeight, rgb, notes);
 }
 

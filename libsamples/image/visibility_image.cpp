@@ -3,7 +3,6 @@
 
 #include "core/lists.h"
 #include "core/math.h"
-#include "image/compare.h"
 
 #include <glm/geometric.hpp>
 

@@ -10,7 +10,6 @@
 #include <cctype>
 #include <regex>
 #include <string_view>
-#include <vector>
 
 namespace nook
 {

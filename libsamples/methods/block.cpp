@@ -274,9 +274,9 @@ MemberPlace placeOf(const BlockMember& member, std::size_t end)
 	return {offset, offset + bytes};
 }
 
-std::string membersGlsl(bool all)
+std::string membersGlsl()
 {
-	return joinedText(blockMembers(all), "",
+	return joinedText(blockMembers(true), "",
 					  [](const BlockMember& member)
 					  { return "\t" + std::string(member.type) + " " + member.name + "; // " + member.meaning + "\n"; });
 }

@@ -69,8 +69,8 @@ struct MemberPlace
 };
 MemberPlace placeOf(const BlockMember& member, std::size_t end);
 
-// One line per member with its meaning.
-std::string membersGlsl(bool all = false);
+// One line per member of all methods with its meaning.
+std::string membersGlsl();
 
 // "NOOK_SAMPLES" → its value, for every constant.
 std::map<std::string, std::string> constantsOf(const ShadeBlock& block);

@@ -2,6 +2,7 @@
 #include "methods/feature_table.h"
 
 #include "core/decimal.h"
+#include "core/lists.h"
 #include "methods/feature_parts.h"
 #include "methods/method_table.h"
 
@@ -225,9 +226,8 @@ std::span<const FeatureRow> featureTable()
 
 const FeatureRow& featureOf(std::string_view option)
 {
-	const std::span<const FeatureRow> table = featureTable();
-	const auto found = std::find_if(table.begin(), table.end(), [option](const FeatureRow& row) { return row.option == option; });
-	assert(found != table.end());
+	const FeatureRow* const found = firstWhere(featureTable(), [option](const FeatureRow& row) { return row.option == option; });
+	assert(found != nullptr);
 	return *found;
 }
 

@@ -84,7 +84,7 @@ std::string glSourceOf(const ShadePass& pass, PictureFormat format)
 	functions += packing != nullptr ? writer.add(packing, constants) : "";
 	std::string call = entry + (pass.of_pixel ? "(nookPixel(at))" : "(at)");
 	call = packing != nullptr ? std::string(packing) + "(at, " + call + ")" : call;
-	const std::string head = kHead + membersGlsl(true) + kPrelude + functions + "layout(location = 0) out " +
+	const std::string head = kHead + membersGlsl() + kPrelude + functions + "layout(location = 0) out " +
 							 kTypes[static_cast<std::size_t>(format)] +
 							 " nook_out;\nvoid main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n";
 	return head + "\tnook_out = " + call + ";\n" + (pass.leaves ? "\tif (nook_out < 0.0)\n\t{\n\t\tdiscard;\n\t}\n" : "") + "}\n";

@@ -109,16 +109,13 @@ const MethodRow& rowOf(ShadeMethod method)
 
 const MethodRow& volumeRow(bool masks)
 {
-	const std::span<const MethodRow> table = methodTable();
-	return *std::find_if(table.begin(), table.end(),
-						 [masks](const MethodRow& row) { return row.kind == MethodKind::volumes && row.masks == masks; });
+	return *firstWhere(methodTable(),
+					   [masks](const MethodRow& row) { return row.kind == MethodKind::volumes && row.masks == masks; });
 }
 
 const MethodRow* methodNamed(std::string_view name)
 {
-	const std::span<const MethodRow> table = methodTable();
-	const auto found = std::find_if(table.begin(), table.end(), [name](const MethodRow& row) { return row.name == name; });
-	return found != table.end() ? &*found : nullptr;
+	return firstWhere(methodTable(), [name](const MethodRow& row) { return row.name == name; });
 }
 
 std::string methodNames(const std::function<bool(const MethodRow&)>& fits, const std::string& between)

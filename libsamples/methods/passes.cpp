@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "methods/passes.h"
 
-#include "methods/block.h"
 #include "methods/method_table.h"
 
 #include <array>
 #include <cassert>
-#include <string>
 
 namespace nook
 {

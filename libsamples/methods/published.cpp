@@ -259,10 +259,10 @@ Pattern crytekPoints(int count)
 	return pattern;
 }
 
-std::vector<glm::vec4> horizonDirections(int directions, std::uint32_t seed)
+std::vector<glm::vec4> horizonDirections(int directions)
 {
 	assert(directions > 0);
-	Random random(seed);
+	Random random(1);
 	const std::array<double, kVariants> turns = shuffled(random);
 	const std::array<double, kVariants> jitters = shuffled(random);
 	std::vector<glm::vec4> samples;

@@ -19,9 +19,8 @@ namespace
 
 const FeatureRow* featureNamed(std::string_view option)
 {
-	const std::span<const FeatureRow> table = featureTable();
-	const auto found = std::find_if(table.begin(), table.end(), [option](const FeatureRow& row) { return row.option == option; });
-	return found != table.end() && (found->places & kInShade) != 0 ? &*found : nullptr;
+	return firstWhere(featureTable(),
+					  [option](const FeatureRow& row) { return row.option == option && (row.places & kInShade) != 0; });
 }
 
 double valueOf(const JsonValue& json, const FeatureRow& feature)
@@ -77,9 +76,7 @@ std::span<const MethodRecipe> raysRecipes()
 
 const MethodRecipe* recipeFor(std::span<const MethodRecipe> recipes, ShadeMethod method)
 {
-	const auto found =
-		std::find_if(recipes.begin(), recipes.end(), [method](const MethodRecipe& one) { return one.method == method; });
-	return found != recipes.end() ? &*found : nullptr;
+	return firstWhere(recipes, [method](const MethodRecipe& one) { return one.method == method; });
 }
 
 void applyRecipe(ShadeSettings& settings, const MethodRecipe& recipe, double reach_m)
@@ -158,10 +155,8 @@ std::vector<MethodRecipe> recipesOf(const std::string& text, const std::string& 
 	for (const JsonValue& one : root.objects("recipes"))
 	{
 		recipes.push_back(recipeOf(one));
-		if (recipeFor({recipes.data(), recipes.size() - 1}, recipes.back().method) != nullptr)
-		{
-			one.fail("method", "one that was there", "each method once");
-		}
+		failIf(recipeFor({recipes.data(), recipes.size() - 1}, recipes.back().method) != nullptr, one, "method",
+			   "one that was there", "each method once");
 	}
 	return recipes;
 }

@@ -46,19 +46,17 @@ MaskTables madeTables(int count)
 {
 	MaskTables tables;
 	tables.directions = count;
-	for (const glm::vec4& d : maskDirections(count))
-	{
-		tables.rays.push_back(glm::vec3(d) * (1.0F - d.w));
-	}
+	tables.rays = mapped(maskDirections(count), [](const glm::vec4& d) { return glm::vec3(d) * (1.0F - d.w); });
 	tables.rays.resize((tables.rays.size() + 127) / 128 * 128);
 	volume_kernels::Kernels kernels;
 	kernels.rays = tables.rays;
 	const int side = kernels.nookHalfSpaces();
 	const auto fours = static_cast<int>(tables.rays.size() / 128);
-	for (int i = 0; i < fours * side * side; ++i)
+	const auto texelOf = [&](int i)
 	{
-		tables.half_spaces.push_back(kernels.nookHalfSpaceTexel({i % side, i / side % side}, i / (side * side)));
-	}
+		return kernels.nookHalfSpaceTexel({i % side, i / side % side}, i / (side * side));
+	};
+	tables.half_spaces = mapped(countingFrom(0, static_cast<std::size_t>(fours * side * side)), texelOf);
 	return tables;
 }
 

@@ -213,7 +213,7 @@ Pattern crytekPoints(int count);
 
 // For the pixels of a 4 × 4 window in turn: directions × (cos, sin, jitter, weight), rotated by sixteenths of the angle between
 // directions and jittered by sixteenths of a step, both in random order.
-std::vector<glm::vec4> horizonDirections(int directions, std::uint32_t seed = 1);
+std::vector<glm::vec4> horizonDirections(int directions);
 
 // For the pixels of a 4 × 4 window in turn: slices × (cos, sin, jitter, weight), rotated by sixteenths of the angle between slices
 // and jittered by quarters of a step, in GTAO's order.

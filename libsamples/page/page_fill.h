@@ -23,17 +23,9 @@ inline std::string filledPage(std::string_view page, const std::vector<PageSlot>
 	std::string out;
 	while (!page.empty())
 	{
-		const auto slot = std::find_if(slots.begin(), slots.end(), [&](const PageSlot& s) { return page.starts_with(s.first); });
-		if (slot != slots.end())
-		{
-			out += slot->second;
-			page.remove_prefix(slot->first.size());
-		}
-		else
-		{
-			out += page.front();
-			page.remove_prefix(1);
-		}
+		const PageSlot* const slot = firstWhere(slots, [&](const PageSlot& s) { return page.starts_with(s.first); });
+		out += slot != nullptr ? std::string_view(slot->second) : page.substr(0, 1);
+		page.remove_prefix(slot != nullptr ? slot->first.size() : 1);
 	}
 	return out;
 }

@@ -13,6 +13,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 
 namespace nook::detail
 {
@@ -90,9 +91,12 @@ double angleBetween(double h, double s0, double s1)
 class PlaneCell
 {
 public:
-	PlaneCell(Domain domain, std::span<const glm::dvec3> points) : m_domain(domain), m_points(points) {}
+	PlaneCell(Domain domain, std::span<const glm::dvec3> points, std::span<const double> powers)
+		: m_domain(domain), m_points(points), m_powers(powers)
+	{
+	}
 
-	void build(int index, std::span<const double> powers, const std::vector<int>& neighbours)
+	void addTo(Cells& cells, int index, const std::vector<int>& neighbours)
 	{
 		m_index = index;
 		m_polygon = {{-2.0, -2.0, kBox}, {2.0, -2.0, kBox}, {2.0, 2.0, kBox}, {-2.0, 2.0, kBox}};
@@ -105,18 +109,13 @@ public:
 			const double dx = q.x - p.x;
 			const double dy = q.y - p.y;
 			double offset = 0.5 * (dx * (p.x + q.x) + dy * (p.y + q.y));
-			if (!powers.empty())
+			if (!m_powers.empty())
 			{
-				offset += 0.5 * (powers[i] - powers[j]);
+				offset += 0.5 * (m_powers[i] - m_powers[j]);
 			}
 			const double length = std::sqrt(dx * dx + dy * dy);
 			clip(m_polygon, m_scratch, dx / length, dy / length, offset / length, neighbour);
 		}
-	}
-
-	void addTo(Cells& cells)
-	{
-		const auto i = static_cast<std::size_t>(m_index);
 		double integral = 0.0;
 		glm::dvec3 moment(0.0);
 		for (std::size_t k = 0; k < m_polygon.size(); ++k)
@@ -177,6 +176,7 @@ private:
 
 	Domain m_domain;
 	std::span<const glm::dvec3> m_points;
+	std::span<const double> m_powers;
 	int m_index = 0;
 	std::vector<Corner> m_polygon;
 	std::vector<Corner> m_scratch;
@@ -315,14 +315,19 @@ void clip(std::vector<glm::dvec3>& polygon, std::vector<glm::dvec3>& scratch, co
 	}
 }
 
+// Two unit vectors that form a right-handed frame with the unit vector n.
+std::array<glm::dvec3, 2> axesAround(const glm::dvec3& n)
+{
+	const glm::dvec3 axis = std::fabs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+	const glm::dvec3 u = glm::normalize(glm::cross(axis, n));
+	return {u, glm::cross(n, u)};
+}
+
 // A square in the plane that covers its intersection with the box, counter-clockwise seen from outside.
 void startFace(const Plane& plane, std::vector<glm::dvec3>& polygon)
 {
-	const glm::dvec3& n = plane.normal;
-	const glm::dvec3 axis = std::fabs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-	const glm::dvec3 u = glm::normalize(glm::cross(axis, n));
-	const glm::dvec3 v = glm::cross(n, u);
-	const glm::dvec3 foot = plane.offset * n;
+	const auto [u, v] = axesAround(plane.normal);
+	const glm::dvec3 foot = plane.offset * plane.normal;
 	const double r = 4.0 * kBoxHalf;
 	polygon = {foot - r * u - r * v, foot + r * u - r * v, foot + r * u + r * v, foot - r * u + r * v};
 }
@@ -442,15 +447,6 @@ void clip(std::vector<ArcCorner>& polygon, std::vector<ArcCorner>& scratch, cons
 	}
 }
 
-// The hemisphere around `axis` as four quarter arcs.
-void startPolygon(const glm::dvec3& axis, int label, std::vector<ArcCorner>& polygon)
-{
-	const glm::dvec3 helper = std::fabs(axis.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-	const glm::dvec3 u = glm::normalize(glm::cross(helper, axis));
-	const glm::dvec3 v = glm::cross(axis, u);
-	polygon = {{u, label}, {v, label}, {-u, label}, {-v, label}};
-}
-
 // Signed area of a spherical triangle (Van Oosterom and Strackee 1983).
 double triangleArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
 {
@@ -471,13 +467,6 @@ double turningArea(const std::vector<ArcCorner>& polygon, const std::vector<glm:
 		}
 	}
 	return std::max(area, 0.0);
-}
-
-// True if a corner is nearly opposite to the direction, where the fan's triangles lose all precision (clusters of directions).
-bool reachesAround(const glm::dvec3& direction, const std::vector<ArcCorner>& polygon)
-{
-	return std::any_of(polygon.begin(), polygon.end(),
-					   [&](const ArcCorner& corner) { return glm::dot(direction, corner.x) < -0.999; });
 }
 
 void addCell(Cells& cells, int index, const glm::dvec3& direction, const std::vector<ArcCorner>& polygon,
@@ -507,7 +496,9 @@ void addCell(Cells& cells, int index, const glm::dvec3& direction, const std::ve
 		}
 	}
 	const auto i = static_cast<std::size_t>(index);
-	if (reachesAround(direction, polygon))
+	// The fan's triangles lose all precision at a corner nearly opposite to the direction (clusters of directions).
+	if (std::any_of(polygon.begin(), polygon.end(),
+					[&](const ArcCorner& corner) { return glm::dot(direction, corner.x) < -0.999; }))
 	{
 		area = turningArea(polygon, mapped(polygon, [&](const ArcCorner& corner)
 										   { return glm::normalize(scaled[i] - scaled[static_cast<std::size_t>(corner.label)]); }));
@@ -536,13 +527,9 @@ template <class Add> Cells cellsOf(std::span<const glm::dvec3> points, const Nei
 
 Cells planeCells(Domain domain, std::span<const glm::dvec3> points, std::span<const double> powers)
 {
-	PlaneCell cell(domain, points);
+	PlaneCell cell(domain, points, powers);
 	return cellsOf(points, planeNeighbours(points, powers),
-				   [&](Cells& cells, int i, const std::vector<int>& list)
-				   {
-					   cell.build(i, powers, list);
-					   cell.addTo(cells);
-				   });
+				   [&](Cells& cells, int i, const std::vector<int>& list) { cell.addTo(cells, i, list); });
 }
 
 Cells spaceCells(std::span<const glm::dvec3> points, std::span<const double> powers)
@@ -578,7 +565,8 @@ Cells directionCells(std::span<const glm::dvec3> points, std::span<const double>
 			const glm::dvec3 n = glm::normalize(scaled[i] - scaled[static_cast<std::size_t>(list[k])]);
 			if (k == 0)
 			{
-				startPolygon(n, list[k], polygon);
+				const auto [u, v] = axesAround(n); // the hemisphere around n as four quarter arcs
+				polygon = {{u, list[k]}, {v, list[k]}, {-u, list[k]}, {-v, list[k]}};
 			}
 			else
 			{

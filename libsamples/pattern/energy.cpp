@@ -23,8 +23,6 @@
 
 #include <array>
 #include <cassert>
-#include <span>
-#include <vector>
 
 #include <glm/geometric.hpp>
 

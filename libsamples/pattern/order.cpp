@@ -154,7 +154,7 @@ std::vector<std::size_t> ordered(const Pattern& variant, const std::vector<Unit>
 		}
 		prefix.take(units[best]);
 		taken[best] = 1;
-		samples.insert(samples.end(), units[best].begin(), units[best].end());
+		append(samples, units[best]);
 		order.push_back(best);
 	}
 	return order;

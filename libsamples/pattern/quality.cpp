@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <limits>
 
 namespace nook
@@ -438,8 +437,7 @@ std::vector<Measure> measuresBehind(const PatternTile& tile, const std::vector<T
 	std::vector<Measure> measures;
 	const TileTime time{tile.frames, ema, tile.moves};
 	const std::size_t count = tile.variants.front().count();
-	std::vector<int> lasts;
-	std::copy_if(kBegun.begin(), kBegun.end(), std::back_inserter(lasts), [&](int last) { return last < tile.frames; });
+	const std::vector<int> lasts = itemsWhere(kBegun, [&](int last) { return last < tile.frames; });
 	ProgressCounter progress(run.progress, "behind filters", filters.size() * (tile.frames > 1 ? 5 + lasts.size() : 2));
 	for (const TileFilter& filter : filters)
 	{

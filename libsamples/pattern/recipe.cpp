@@ -2,7 +2,6 @@
 #include "pattern/recipe.h"
 
 #include "core/decimal.h"
-#include "core/error.h"
 
 namespace nook
 {

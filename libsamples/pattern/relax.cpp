@@ -12,7 +12,6 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace nook
 {
@@ -57,33 +56,30 @@ Points moved(const Layout& layout, const Points& points, const Points& step, dou
 }
 
 // Points with their cells, and how far those are from equal.
-class Spread
+struct Spread
 {
-public:
-	Spread(const Layout& layout, Points points) : m_layout(layout)
-	{
-		take(std::move(points));
-	}
+	const Layout& layout;
+	Points points;
+	Cells cells = exactCells(layout.domain, points);
+	double error = relativeSpread(cells.integrals);
 
-	void take(Points points)
+	void take(Spread other)
 	{
-		m_points = std::move(points);
-		m_cells = exactCells(m_layout.domain, m_points);
-		m_error = relativeSpread(m_cells.integrals);
+		points = std::move(other.points);
+		cells = std::move(other.cells);
+		error = other.error;
 	}
 
 	// One force step, shortened until the error falls and longer the next time if accepted. False if no step helps.
 	bool repel(double& step)
 	{
-		const Points force = repulsion(m_layout.domain, m_points);
+		const Points force = repulsion(layout.domain, points);
 		for (int trial = 0; trial < 4; ++trial)
 		{
-			Spread candidate(m_layout, moved(m_layout, m_points, force, step));
-			if (candidate.m_error < m_error)
+			Spread candidate{layout, moved(layout, points, force, step)};
+			if (candidate.error < error)
 			{
-				m_points.swap(candidate.m_points);
-				m_cells = std::move(candidate.m_cells);
-				m_error = candidate.m_error;
+				take(std::move(candidate));
 				step *= 1.5;
 				return true;
 			}
@@ -91,25 +87,6 @@ public:
 		}
 		return false;
 	}
-
-	const Points& points() const
-	{
-		return m_points;
-	}
-	const Cells& cells() const
-	{
-		return m_cells;
-	}
-	double error() const
-	{
-		return m_error;
-	}
-
-private:
-	const Layout& m_layout;
-	Points m_points;
-	Cells m_cells;
-	double m_error = 0.0;
 };
 
 // One step of Lloyd's method: the weighted centroids, moved into the domain and onto the layout.
@@ -144,19 +121,19 @@ void relaxElectro(const Layout& layout, Points& points, const Seen& seen)
 	constexpr int kForceSteps = 3;
 	const double spacing = 1.0 / std::sqrt(static_cast<double>(points.size()));
 	double step = 0.2 * spacing;
-	Spread spread(layout, points);
+	Spread spread{layout, points};
 	Points best = points;
-	double best_error = spread.error();
+	double best_error = spread.error;
 	const auto keepBest = [&]
 	{
-		if (spread.error() <= best_error)
+		if (spread.error <= best_error)
 		{
-			best = spread.points();
-			best_error = spread.error();
+			best = spread.points;
+			best_error = spread.error;
 		}
 		if (seen)
 		{
-			seen(spread.points());
+			seen(spread.points);
 		}
 	};
 	for (int round = 0; round < kRounds; ++round)
@@ -170,9 +147,9 @@ void relaxElectro(const Layout& layout, Points& points, const Seen& seen)
 		}
 		keepBest();
 		// The periodic pull toward the weighted centroids.
-		Points target = centroidsOf(layout, spread.cells());
-		const double move = greatestMove(spread.points(), target);
-		spread.take(std::move(target));
+		Points target = centroidsOf(layout, spread.cells);
+		const double move = greatestMove(spread.points, target);
+		spread.take({layout, std::move(target)});
 		keepBest();
 		step = std::clamp(step, 1e-4 * spacing, 0.2 * spacing);
 		if (move < 1e-4 * spacing)
@@ -434,8 +411,7 @@ void relaxStart(const Recipe& recipe, const Layout& layout, std::size_t index, P
 // Indices of the candidates, best first; stable.
 std::vector<std::size_t> ranking(const std::vector<Candidate>& candidates)
 {
-	std::vector<std::size_t> order(candidates.size());
-	std::iota(order.begin(), order.end(), std::size_t{0});
+	std::vector<std::size_t> order = countingFrom(std::size_t{0}, candidates.size());
 	std::stable_sort(order.begin(), order.end(),
 					 [&](std::size_t l, std::size_t r) { return candidates[l].value < candidates[r].value; });
 	return order;
@@ -554,12 +530,7 @@ Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings
 							squaredError(recipe.domain, Ensemble::plane, Part::whole, points, weightsFor(recipe, layout, points));
 					}
 				});
-	std::size_t best = 0;
-	for (std::size_t k = 1; k < starts; ++k)
-	{
-		best = values[k] < values[best] ? k : best;
-	}
-	return sets[best];
+	return sets[static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin())];
 }
 
 Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)

@@ -182,7 +182,7 @@ Pattern unionOf(const PatternTile& tile, double divisor)
 	all.domain = tile.domain;
 	for (const Pattern& variant : tile.variants)
 	{
-		all.points.insert(all.points.end(), variant.points.begin(), variant.points.end());
+		append(all.points, variant.points);
 		std::transform(variant.weights.begin(), variant.weights.end(), std::back_inserter(all.weights),
 					   [divisor](double w) { return w / divisor; });
 	}

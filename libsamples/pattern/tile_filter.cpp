@@ -55,12 +55,8 @@ std::vector<double> binomial(int taps)
 
 std::vector<double> gauss(int reach, double sigma)
 {
-	std::vector<double> row;
-	for (int i = -reach; i <= reach; ++i)
-	{
-		row.push_back(expOf(-0.5 * i * i / (sigma * sigma)));
-	}
-	return row;
+	return mapped(countingFrom(-reach, 2 * static_cast<std::size_t>(reach) + 1),
+				  [sigma](int i) { return expOf(-0.5 * i * i / (sigma * sigma)); });
 }
 
 std::optional<double> numberOf(const std::string& text)

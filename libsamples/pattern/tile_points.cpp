@@ -36,10 +36,10 @@ public:
 		: m_base(base), m_layout(structureOf(base)), m_variants(variants), m_count(base.count()), m_open(open)
 	{
 		const std::size_t centre = m_layout.has_centre ? 1 : 0;
-		for (std::size_t i = 0; i < m_count; ++i)
-		{
-			m_slot.push_back(i < centre ? 0 : m_layout.symmetric ? centre + (i - centre) / 2 : i);
-		}
+		m_slot =
+			listOf(m_count, [&](std::size_t i) { return i < centre           ? 0
+														: m_layout.symmetric ? centre + (i - centre) / 2
+																			 : i; });
 	}
 
 	std::vector<double> start(std::size_t, Random& random) const override
@@ -254,11 +254,10 @@ PatternTile tileOf(const Pattern& base, const VariantUnion& all, std::size_t var
 	{
 		const auto first = static_cast<std::ptrdiff_t>(v * base.count());
 		const auto last = first + static_cast<std::ptrdiff_t>(base.count());
-		Pattern variant;
-		variant.domain = base.domain;
-		variant.points.assign(all.points.begin() + first, all.points.begin() + last);
-		variant.weights.assign(all.weights.begin() + first, all.weights.begin() + last);
-		tile.variants.push_back(variant);
+		tile.variants.push_back({.domain = base.domain,
+								 .points = {all.points.begin() + first, all.points.begin() + last},
+								 .weights = {all.weights.begin() + first, all.weights.begin() + last},
+								 .powers = {}});
 	}
 	return tile;
 }
@@ -328,11 +327,8 @@ PatternTile copiesOf(const Pattern& base, std::vector<TileTransform> transforms)
 		t.sin = roundToFloat(t.sin);
 		t.scale = roundToFloat(t.scale);
 		t.axis = glm::dvec3(roundToFloat(t.axis.x), roundToFloat(t.axis.y), roundToFloat(t.axis.z));
-		Pattern variant;
-		variant.domain = base.domain;
-		variant.points = transformed(base.domain, base.points, t);
-		variant.weights = base.weights;
-		tile.variants.push_back(variant);
+		tile.variants.push_back(
+			{.domain = base.domain, .points = transformed(base.domain, base.points, t), .weights = base.weights, .powers = {}});
 	}
 	tile.transforms = std::move(transforms);
 	return tile;
@@ -393,10 +389,8 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, std::span<
 	std::vector<std::vector<double>> ends(starts);
 	std::vector<double> values(starts);
 	const int inner_threads = starts == 1 ? run.threads : 1;
-	LbfgsSettings settings;
-	settings.max_iterations = iterationLimit(moments, variants, variants * base.count());
+	LbfgsSettings settings{.max_iterations = iterationLimit(moments, variants, variants * base.count()), .relative_decrease = 1e-5};
 	settings.memory = moments ? kMemoryByMoments : settings.memory;
-	settings.relative_decrease = 1e-5;
 	ProgressCounter progress(run.progress, "starts", starts * stepsOf(settings));
 	parallelFor(starts, run.threads,
 				[&](std::size_t k)

@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <numeric>
 
 // Eigen's solvers with the same rounding on every processor. On ARM64 Eigen uses fused multiply-add intrinsics regardless of
 // compiler flags, where SSE2 rounds twice; this replaces them with separate operations.
@@ -211,8 +210,7 @@ std::vector<double> fittedWeights(Domain domain, std::span<const glm::dvec3> poi
 			a(i, j) = 1.0 - form.pairs[static_cast<std::size_t>(i * n + j)] + (i == j ? 1e-13 : 0.0);
 		}
 	}
-	std::vector<int> chosen(points.size());
-	std::iota(chosen.begin(), chosen.end(), 0);
+	std::vector<int> chosen = countingFrom(0, points.size());
 	Vector w = Vector::Constant(n, 1.0 / static_cast<double>(n));
 	for (int round = 0; round < 10 * static_cast<int>(n) + 10; ++round)
 	{

@@ -96,10 +96,9 @@ std::vector<std::string_view> builtinNames()
 Level builtinLevel(std::string_view name)
 {
 	const std::string_view base = name.substr(0, name.find(':'));
-	const auto* const found =
-		std::find_if(kBuiltins.begin(), kBuiltins.end(), [&](const Builtin& one) { return one.name == base; });
+	const auto* const found = firstWhere(kBuiltins, [&](const Builtin& one) { return one.name == base; });
 	const bool has_count = base != name;
-	refuseInputIf(found == kBuiltins.end() || (has_count && found->make_sized == nullptr), "builtin", "'" + std::string(name) + "'",
+	refuseInputIf(found == nullptr || (has_count && found->make_sized == nullptr), "builtin", "'" + std::string(name) + "'",
 				  "one of " + joinedText(builtinNames(), ", ") + ", heightfield:N or cave:N", ExitCode::usage);
 	const std::size_t triangles = has_count ? triangleCount(name.substr(base.size() + 1), *found) : found->triangles;
 	Level level = found->make != nullptr ? found->make() : found->make_sized(triangles);

@@ -4,6 +4,7 @@
 #include "scene/builtin.h"
 #include "scene/builtin_shapes.h"
 
+#include "core/lists.h"
 #include "core/math.h"
 
 #include <algorithm>

@@ -96,11 +96,7 @@ void bridge(std::vector<Corner>& ring, const std::vector<Corner>& hole)
 						 return beginsInside(ring, link.from, b) && !touchesAny(ring, a, b) && !touchesAny(hole, a, b);
 					 });
 	assert(best != links.end());
-	std::vector<Corner> way;
-	for (std::size_t k = 0; k <= hole.size(); ++k)
-	{
-		way.push_back(hole[(best->to + k) % hole.size()]);
-	}
+	std::vector<Corner> way = listOf(hole.size() + 1, [&](std::size_t k) { return hole[(best->to + k) % hole.size()]; });
 	way.push_back(ring[best->from]);
 	ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(best->from) + 1, way.begin(), way.end());
 }
@@ -145,12 +141,7 @@ std::vector<glm::uvec3> triangulateContours(const std::vector<Contour>& contours
 	uint32_t index = 0;
 	for (const Contour& contour : contours)
 	{
-		std::vector<Corner> part;
-		for (const glm::dvec2 point : contour)
-		{
-			part.push_back({point, index, 0.0});
-			index += 1;
-		}
+		const std::vector<Corner> part = mapped(contour, [&index](glm::dvec2 point) { return Corner{point, index++, 0.0}; });
 		if (ring.empty())
 		{
 			ring = part;
@@ -288,13 +279,9 @@ void addBand(LevelBuilder& builder, const Frame& frame, glm::dvec2 low, glm::dve
 
 using Profile = std::vector<glm::dvec2>;
 
-void addScaled(LevelBuilder& builder, glm::dvec3 foot, Profile profile, double scale, int segments)
+void addScaled(LevelBuilder& builder, glm::dvec3 foot, const Profile& profile, double scale, int segments)
 {
-	for (glm::dvec2& p : profile)
-	{
-		p *= scale;
-	}
-	addLathe(builder, frameAt(foot), profile, segments);
+	addLathe(builder, frameAt(foot), mapped(profile, [scale](glm::dvec2 p) { return p * scale; }), segments);
 }
 
 } // namespace
@@ -515,11 +502,6 @@ Contour holeOf(Contour contour)
 {
 	std::reverse(contour.begin(), contour.end());
 	return contour;
-}
-
-void append(Contour& contour, const Contour& points)
-{
-	contour.insert(contour.end(), points.begin(), points.end());
 }
 
 void addColumn(LevelBuilder& builder, glm::dvec3 foot, double scale, int segments)

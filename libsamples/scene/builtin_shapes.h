@@ -27,8 +27,6 @@ Contour rectangleOf(glm::dvec2 least, glm::dvec2 most);
 // Reverses a contour.
 Contour holeOf(Contour contour);
 
-void append(Contour& contour, const Contour& points);
-
 // Position and orientation of a shape; the axes are right-handed and orthonormal.
 struct Frame
 {

@@ -2,6 +2,7 @@
 // A house in its garden, after the scene of the same name in M. McGuire, "Ambient Occlusion Volumes", 2010: thin fins, a chain-link
 // fence that is one masked polygon, and large occluders that the main camera does not see. The front faces +z, the street is at z =
 // 10 m.
+#include "core/lists.h"
 #include "core/math.h"
 #include "scene/builtin.h"
 #include "scene/builtin_shapes.h"

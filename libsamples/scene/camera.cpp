@@ -113,10 +113,8 @@ glm::dvec3 checkedEyeOf(const CameraOptions& options, const NamedView& view)
 	{
 		const ViewLine line = projector.lineOf({at.x * options.width_px, at.y * options.height_px});
 		eye = glm::dvec3(world_from_camera * glm::dvec4(line.at, 1.0));
-		if (!(std::max({std::fabs(eye.x), std::fabs(eye.y), std::fabs(eye.z)}) <= kFarthest_m))
-		{
-			refuseInput("camera '" + view.name + "'", "rays from beyond 1e15 m", "them to begin nearer");
-		}
+		refuseInputIf(!(std::max({std::fabs(eye.x), std::fabs(eye.y), std::fabs(eye.z)}) <= kFarthest_m),
+					  "camera '" + view.name + "'", "rays from beyond 1e15 m", "them to begin nearer");
 	}
 	return eye; // the last: the middle
 }

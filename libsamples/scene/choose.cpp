@@ -115,10 +115,9 @@ std::vector<std::string_view> namesDownTo(const Level& level, const Mesh& mesh)
 	std::vector<std::string> names;
 	const auto add = [&](const std::string& name)
 	{
-		const std::string quoted = "'" + oneLine(name) + "'";
-		if (names.size() <= kListedParts && std::find(names.begin(), names.end(), quoted) == names.end())
+		if (names.size() <= kListedParts)
 		{
-			names.push_back(quoted);
+			addOnce(names, "'" + oneLine(name) + "'");
 		}
 	};
 	const bool by_material = pattern.starts_with("material:");
@@ -273,9 +272,8 @@ void findUndrawn(const Level& level, std::vector<Finding>& findings)
 		for (const Mesh& mesh : level.meshes)
 		{
 			const std::vector<std::string_view> names = namesDownTo(level, mesh);
-			const auto named =
-				std::find_if(names.begin(), names.end(), [&words = words](auto name) { return hasWord(name, words); });
-			if (named != names.end())
+			const auto* const named = firstWhere(names, [&words = words](auto name) { return hasWord(name, words); });
+			if (named != nullptr)
 			{
 				tally.add("mesh '" + mesh.name + "', which --ignore '" + std::string(*named) + "' leaves out");
 			}

@@ -20,7 +20,6 @@
 #include <limits>
 #include <numeric>
 #include <set>
-#include <vector>
 
 namespace nook
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/load.h"
 
+#include "core/lists.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "scene/load_parts.h"
@@ -208,11 +209,10 @@ private:
 
 	std::vector<Point> allPoints() const
 	{
-		std::vector<Point> points;
-		for (uint32_t part = 0; part < m_parts.size(); ++part)
-		{
-			points.push_back({m_parts[part].sum / m_parts[part].corners, m_parts[part].bounds, part});
-		}
+		std::vector<Point> points = mapped(countingFrom(0U, m_parts.size()),
+										   [this](uint32_t part) {
+											   return Point{m_parts[part].sum / m_parts[part].corners, m_parts[part].bounds, part};
+										   });
 		for (const LevelCamera& camera : m_level.cameras)
 		{
 			const glm::dvec3 eye(camera.world_from_camera[3]);

@@ -136,8 +136,7 @@ std::vector<std::size_t> partsOfParts(const FbxObjects& objects, const FbxObject
 	std::vector<std::size_t> all;
 	for (const std::size_t deformer : objects.partsOf(geometry, {}, deformers))
 	{
-		const std::vector<std::size_t> parts = objects.partsOf(objects[deformer], {}, kind);
-		all.insert(all.end(), parts.begin(), parts.end());
+		append(all, objects.partsOf(objects[deformer], {}, kind));
 	}
 	return all;
 }
@@ -147,8 +146,7 @@ std::vector<Target> targetsOfMesh(const FbxObjects& objects, const FbxObject& ge
 	std::vector<Target> targets;
 	for (const std::size_t channel : partsOfParts(objects, geometry, "BlendShape", "BlendShapeChannel"))
 	{
-		const std::vector<Target> more = targetsOf(objects, objects[channel]);
-		targets.insert(targets.end(), more.begin(), more.end());
+		append(targets, targetsOf(objects, objects[channel]));
 	}
 	return targets;
 }

@@ -3,6 +3,7 @@
 #include "scene/fbx.h"
 
 #include "core/base64.h"
+#include "core/lists.h"
 #include "core/words.h"
 #include "scene/load_parts.h"
 #include "scene/mesh_text.h"
@@ -512,9 +513,9 @@ private:
 	void sendGroup(std::size_t material, const std::vector<std::size_t>& polygons)
 	{
 		const Texture& texture = m_textures[material];
-		const auto named = std::find_if(m_mesh.uvs.begin(), m_mesh.uvs.end(),
-										[&](const FbxLayer& set) { return set.name == texture.uv_set && !texture.uv_set.empty(); });
-		const FbxLayer* const uvs = named != m_mesh.uvs.end() ? &*named : m_mesh.uvs.empty() ? nullptr : &m_mesh.uvs.front();
+		const FbxLayer* const named =
+			firstWhere(m_mesh.uvs, [&](const FbxLayer& set) { return set.name == texture.uv_set && !texture.uv_set.empty(); });
+		const FbxLayer* const uvs = named != nullptr || m_mesh.uvs.empty() ? named : &m_mesh.uvs.front();
 		m_part = {};
 		m_part.name = m_name;
 		m_part.material = static_cast<uint32_t>(material);

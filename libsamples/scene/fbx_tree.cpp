@@ -70,12 +70,12 @@ public:
 		return nodes(m_bytes.size(), 0);
 	}
 
-private:
 	[[noreturn]] void fail(const std::string& found, const std::string& expected) const
 	{
 		refuseInput(m_path + ": byte " + std::to_string(m_at), found, expected);
 	}
 
+private:
 	std::string_view takeBytes(uint64_t size, const char* what)
 	{
 		if (size > m_bytes.size() - m_at)
@@ -126,22 +126,13 @@ private:
 			FbxNode& node = list.emplace_back();
 			node.name = name;
 			const uint64_t values_end = m_at + values_size;
-			node.values.reserve(values);
-			for (uint64_t i = 0; i < values; ++i)
-			{
-				node.values.push_back(value());
-			}
-			if (m_at > values_end)
-			{
-				fail("values that go on", "their end by byte " + std::to_string(values_end));
-			}
+			node.values = listOf(values, [this](std::size_t) { return value(); });
+			failIf(m_at > values_end, *this, "values that go on", "their end by byte " + std::to_string(values_end));
 			m_at = values_end;
 			if (m_at < node_end)
 			{
-				if (depth + 1 >= kMaxNesting)
-				{
-					fail("more than " + std::to_string(kMaxNesting) + " nodes within one another", "fewer");
-				}
+				failIf(depth + 1 >= kMaxNesting, *this, "more than " + std::to_string(kMaxNesting) + " nodes within one another",
+					   "fewer");
 				node.children = nodes(node_end, depth + 1);
 			}
 			m_at = node_end;
@@ -204,18 +195,13 @@ private:
 		value.count = take<uint32_t>("an array's length");
 		const auto encoding = take<uint32_t>("an array's encoding");
 		const auto size = take<uint32_t>("an array's size");
-		if (encoding > 1)
-		{
-			fail("an array of encoding " + std::to_string(encoding), "0 (plain) or 1 (zlib)");
-		}
+		failIf(encoding > 1, *this, "an array of encoding " + std::to_string(encoding), "0 (plain) or 1 (zlib)");
 		value.compressed = encoding == 1;
 		const uint64_t plain_size = value.count * sizeOf(type);
 		value.bytes = takeBytes(value.compressed ? size : plain_size, "an array");
-		if (value.compressed && plain_size > kMaxExpansion * (uint64_t{size} + 1))
-		{
-			fail("an array of " + std::to_string(plain_size) + " bytes packed into " + std::to_string(size),
-				 "as many as zlib can pack");
-		}
+		failIf(value.compressed && plain_size > kMaxExpansion * (uint64_t{size} + 1), *this,
+			   "an array of " + std::to_string(plain_size) + " bytes packed into " + std::to_string(size),
+			   "as many as zlib can pack");
 		return value;
 	}
 
@@ -294,10 +280,7 @@ private:
 
 	std::vector<FbxNode> nodes(int depth)
 	{
-		if (depth >= kMaxNesting)
-		{
-			fail("more than " + std::to_string(kMaxNesting) + " nodes within one another", "fewer");
-		}
+		failIf(depth >= kMaxNesting, *this, "more than " + std::to_string(kMaxNesting) + " nodes within one another", "fewer");
 		std::vector<FbxNode> list;
 		for (char c = next(); c != 0 && c != '}'; c = next())
 		{
@@ -421,10 +404,9 @@ std::string unescapedText(std::string_view text)
 	std::string plain;
 	while (!text.empty())
 	{
-		const auto* const escape =
-			std::find_if(kEscapes.begin(), kEscapes.end(), [&](const auto& e) { return text.starts_with(e.first); });
-		plain += escape == kEscapes.end() ? text.front() : escape->second;
-		text.remove_prefix(escape == kEscapes.end() ? 1 : escape->first.size());
+		const auto* const escape = firstWhere(kEscapes, [&](const auto& e) { return text.starts_with(e.first); });
+		plain += escape == nullptr ? text.front() : escape->second;
+		text.remove_prefix(escape == nullptr ? 1 : escape->first.size());
 	}
 	return plain;
 }
@@ -449,8 +431,7 @@ std::optional<int64_t> wholeFrom(double number)
 
 const FbxNode* FbxNode::child(std::string_view wanted) const
 {
-	const auto found = std::find_if(children.begin(), children.end(), [&](const FbxNode& node) { return node.name == wanted; });
-	return found == children.end() ? nullptr : &*found;
+	return firstWhere(children, [&](const FbxNode& node) { return node.name == wanted; });
 }
 
 const std::vector<FbxNode>& FbxNode::childrenOf(std::string_view wanted) const

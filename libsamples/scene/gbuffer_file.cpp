@@ -550,13 +550,11 @@ SurfaceMask readSurfaceMask(const std::string& path)
 	const Image image = readWhole(path);
 	const GBufferFile file{path, image};
 	const int channel = depthChannel(image, path, "");
-	SurfaceMask mask{image.width_px, image.height_px, {}};
-	mask.surface.resize(image.values.size() / image.channels.size());
-	for (std::size_t i = 0; i < mask.surface.size(); ++i)
+	const auto isSurface = [&](std::size_t i) -> uint8_t
 	{
-		mask.surface[i] = std::isinf(metresOf(file, channel, i, GBufferImport().sky_depth_m)) ? 0 : 1;
-	}
-	return mask;
+		return std::isinf(metresOf(file, channel, i, GBufferImport().sky_depth_m)) ? 0 : 1;
+	};
+	return {image.width_px, image.height_px, listOf(image.values.size() / image.channels.size(), isSurface)};
 }
 
 int depthChannel(const Image& image, const std::string& path, const std::string& wanted)

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <set>
 #include <tuple>
 #include <utility>
 
@@ -103,11 +102,9 @@ public:
 			failIf(own_vertices && place.instance, m_editor, where, "instances by EXT_mesh_gpu_instancing",
 				   "nodes with a mesh each, since instances share their vertices", ExitCode::unsupported);
 			const Document& node = m_editor.items("nodes")[place.node];
-			if (m_bake.instances == BakeInstances::attribute && m_placements[numberIn(node, "mesh")] > 1 && !place.instance &&
-				!node.value("extras", Document::object()).is_object())
-			{
-				m_editor.fail(where + ".extras", "no object", "one, or nothing", ExitCode::unsupported);
-			}
+			failIf(m_bake.instances == BakeInstances::attribute && m_placements[numberIn(node, "mesh")] > 1 && !place.instance &&
+					   !node.value("extras", Document::object()).is_object(),
+				   m_editor, where + ".extras", "no object", "one, or nothing", ExitCode::unsupported);
 		}
 		checkTextures(m_editor, m_bake, units);
 	}
@@ -535,8 +532,7 @@ void addCharts(GltfEditor& editor, const GltfBake& bake, GltfBaked& made)
 	{
 		Baker baker(editor, textures);
 		baker.add(textured, made);
-		const std::vector<GltfPlace> parts = baker.takeParts();
-		others.insert(others.end(), parts.begin(), parts.end());
+		append(others, baker.takeParts());
 		editor.settle();
 	}
 	made.places = std::move(others);
@@ -638,13 +634,7 @@ TriangleRuns runsOf(const std::vector<bool>& remains)
 		}
 	}
 	std::sort(made.runs.begin(), made.runs.end());
-	for (std::size_t i = 0; i < is_other.size(); ++i)
-	{
-		if (is_other[i])
-		{
-			made.others.push_back(i);
-		}
-	}
+	made.others = indicesWhere(is_other.size(), [&](std::size_t i) { return is_other[i]; });
 	return made;
 }
 

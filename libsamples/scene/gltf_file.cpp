@@ -3,6 +3,7 @@
 
 #include "core/base64.h"
 #include "core/file.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "core/words.h"
 
@@ -220,7 +221,7 @@ private:
 		const uint64_t size = regular ? std::filesystem::file_size(nativePath(path), failed) : 0;
 		refuseInputIf(!regular || failed, m_file.path + ": " + item.element, "no file " + path, "the level's data", ExitCode::file);
 		checkInside(m_file.path, item.element + ".uri", path, m_file.settings);
-		addFile(m_file.files, path);
+		addOnce(m_file.files, path);
 		return size;
 	}
 
@@ -289,10 +290,8 @@ private:
 			m_accessors.push_back(accessor);
 		}
 		// Values without a buffer: a count alone could request any amount of memory.
-		if (m_empty_bytes > (uint64_t{1} << 28U))
-		{
-			m_root.fail("accessors", std::to_string(m_empty_bytes) + " bytes that no buffer holds", "at most 268435456");
-		}
+		failIf(m_empty_bytes > (uint64_t{1} << 28U), m_root, "accessors",
+			   std::to_string(m_empty_bytes) + " bytes that no buffer holds", "at most 268435456");
 	}
 
 	const Accessor& attribute(const JsonValue& item, std::string_view field, std::string_view types) const
@@ -377,36 +376,24 @@ private:
 			items[i].numbers("scale", 3);
 			for (const std::size_t child : children.emplace_back(items[i].indices("children", items.size())))
 			{
-				if (parent[child] != items.size())
-				{
-					items[i].fail("children",
-								  "node " + std::to_string(child) + ", already a child of node " + std::to_string(parent[child]),
-								  "a tree, every node in it once");
-				}
+				failIf(parent[child] != items.size(), items[i], "children",
+					   "node " + std::to_string(child) + ", already a child of node " + std::to_string(parent[child]),
+					   "a tree, every node in it once");
 				parent[child] = i;
 			}
 		}
 		// Every node has at most one parent, so nodes unreachable from the roots form a cycle.
-		std::vector<std::size_t> level;
-		for (std::size_t i = 0; i < items.size(); ++i)
-		{
-			if (parent[i] == items.size())
-			{
-				level.push_back(i);
-			}
-		}
+		std::vector<std::size_t> level = indicesWhere(items.size(), [&](std::size_t i) { return parent[i] == items.size(); });
 		std::vector<bool> reached(items.size(), false);
 		for (std::size_t depth = 0; !level.empty(); ++depth)
 		{
-			if (depth > kMaxDepth)
-			{
-				items[level.front()].fail("", "more than " + std::to_string(kMaxDepth) + " nodes above it", "a flatter tree");
-			}
+			failIf(depth > kMaxDepth, items[level.front()], "", "more than " + std::to_string(kMaxDepth) + " nodes above it",
+				   "a flatter tree");
 			std::vector<std::size_t> below;
 			for (const std::size_t i : level)
 			{
 				reached[i] = true;
-				below.insert(below.end(), children[i].begin(), children[i].end());
+				append(below, children[i]);
 			}
 			level = std::move(below);
 		}

@@ -2,6 +2,7 @@
 // Converts the meshes of a checked glTF file, placed by the nodes of its scene, to triangles of a level.
 #include "scene/gltf_file.h"
 
+#include "core/lists.h"
 #include "core/words.h"
 
 #include <glm/matrix.hpp>
@@ -10,7 +11,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <set>
 #include <tuple>
 
@@ -404,8 +404,7 @@ private:
 	void finishPlace(GltfPlace& place, const Mesh& made) const
 	{
 		place.mirrored = m_mirrored;
-		place.triangles.resize(made.triangle_count);
-		std::iota(place.triangles.begin(), place.triangles.end(), static_cast<uint32_t>(made.first_triangle));
+		place.triangles = countingFrom(static_cast<uint32_t>(made.first_triangle), made.triangle_count);
 		const auto numberOf = [&](uint32_t vertex)
 		{
 			return place.vertices[vertex - place.vertices.front().second].first;

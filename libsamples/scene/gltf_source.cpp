@@ -2,6 +2,7 @@
 // Reads materials, masks, nodes and cameras from a glTF file's JSON.
 #include "scene/gltf_file.h"
 
+#include "core/lists.h"
 #include "core/math.h"
 
 #include <glm/geometric.hpp>
@@ -192,10 +193,7 @@ private:
 			}
 			return;
 		}
-		if (!image)
-		{
-			m_textures[index].fail("source", "nothing", "an image, since a material is masked by it");
-		}
+		failIf(!image, m_textures[index], "source", "nothing", "an image, since a material is masked by it");
 		made.uv_set = static_cast<uint32_t>(info.whole("texCoord", 7).value_or(0));
 		if (const std::optional<JsonValue> transform = extensionOf(info, "KHR_texture_transform"))
 		{
@@ -327,10 +325,10 @@ LevelSource readGltf(const std::string& path, const LoadSettings& settings, Leve
 	}
 	checkGltf(file);
 	LevelSource source;
-	addFile(source.files, path);
+	addOnce(source.files, path);
 	for (const std::string& part : file.files)
 	{
-		addFile(source.files, part);
+		addOnce(source.files, part);
 	}
 	Reader reader(file, source);
 	reader.materials();

@@ -174,11 +174,8 @@ public:
 				sum += weight;
 			}
 		}
-		std::vector<std::pair<double, double>> sorted; // weight, joint
-		for (const auto& [joint, weight] : weight_of)
-		{
-			sorted.emplace_back(weight, weight > 0.0 ? joint : 0.0);
-		}
+		std::vector<std::pair<double, double>> sorted = // weight, joint
+			mapped(weight_of, [](const auto& of) { return std::pair(of.second, of.second > 0.0 ? of.first : 0.0); });
 		std::stable_sort(sorted.begin(), sorted.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
 		sorted.resize(4 * m_joints.size());
 		const double kept = sumOver(sorted, [](const auto& item) { return item.first; });
@@ -328,7 +325,7 @@ private:
 				}
 			}
 		}
-		place.vertices.insert(place.vertices.end(), added.begin(), added.end());
+		append(place.vertices, added);
 		return made;
 	}
 

@@ -133,11 +133,9 @@ private:
 			: uri.empty() ? std::string(viewBytes(m_editor.file, numberIn(m_editor.items("images")[number], "bufferView")))
 						  : dataOf(uri, item).value_or("");
 		Image image = decodeImage(bytes, path.empty() ? "image.png" : path);
-		if (std::any_of(image.values.begin(), image.values.end(),
-						[](float value) { return std::fabs(255.0F * value - std::round(255.0F * value)) > 0.01F; }))
-		{
-			m_editor.fail(where, "more than 8 bits per channel", "8 bits, for the red channel", ExitCode::unsupported);
-		}
+		failIf(std::any_of(image.values.begin(), image.values.end(),
+						   [](float value) { return std::fabs(255.0F * value - std::round(255.0F * value)) > 0.01F; }),
+			   m_editor, where, "more than 8 bits per channel", "8 bits, for the red channel", ExitCode::unsupported);
 		return image;
 	}
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/lists.h"
 #include "core/words.h"
 #include "scene/gltf_file.h"
 
@@ -63,8 +64,8 @@ std::size_t componentsOf(std::string_view type)
 {
 	constexpr std::array<std::pair<std::string_view, std::size_t>, 7> kTypes{
 		{{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}}};
-	const auto* const found = std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& entry) { return entry.first == type; });
-	return found == kTypes.end() ? 0 : found->second;
+	const auto* const found = firstWhere(kTypes, [&](const auto& entry) { return entry.first == type; });
+	return found == nullptr ? 0 : found->second;
 }
 
 GltfValues::GltfValues(GltfFile& file, std::size_t accessor)
@@ -307,15 +308,13 @@ std::optional<std::vector<glm::dmat4>> instancesOf(GltfFile& file, const JsonVal
 	failIf(!count, attributes, "", "no attribute", "one at least, such as TRANSLATION");
 	failIf(*count > most, attributes, "", std::to_string(*count) + " instances",
 		   "at most " + std::to_string(kMaxInstances) + " in the file");
-	std::vector<glm::dmat4> places;
-	places.reserve(*count);
-	for (std::size_t i = 0; i < *count; ++i)
+	const auto placeAt = [&](std::size_t i)
 	{
-		places.push_back(placeOf(translation ? translation->vec3(i) : glm::dvec3(0.0),
-								 rotation ? glm::dvec4(rotation->vec3(i), rotation->number(i, 3)) : glm::dvec4(0.0, 0.0, 0.0, 1.0),
-								 scale ? scale->vec3(i) : glm::dvec3(1.0)));
-	}
-	return places;
+		return placeOf(translation ? translation->vec3(i) : glm::dvec3(0.0),
+					   rotation ? glm::dvec4(rotation->vec3(i), rotation->number(i, 3)) : glm::dvec4(0.0, 0.0, 0.0, 1.0),
+					   scale ? scale->vec3(i) : glm::dvec3(1.0));
+	};
+	return listOf(*count, placeAt);
 }
 
 } // namespace nook

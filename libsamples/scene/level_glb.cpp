@@ -221,10 +221,7 @@ private:
 		std::vector<uint32_t> materials; // in order of first use
 		for (std::size_t t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t)
 		{
-			if (std::find(materials.begin(), materials.end(), m_level.materials[t]) == materials.end())
-			{
-				materials.push_back(m_level.materials[t]);
-			}
+			addOnce(materials, m_level.materials[t]);
 		}
 		Json primitives = Json::array();
 		for (const uint32_t material : materials)

@@ -73,7 +73,7 @@ Level readLevel(const std::string& path, const LoadSettings& settings, LevelSour
 	}
 	else
 	{
-		addFile(source.files, path);
+		addOnce(source.files, path);
 		readGeometry(path, settings, source, level);
 	}
 	level.name = nativePath(path).filename().string();
@@ -236,18 +236,6 @@ std::vector<uint32_t> dropVertices(Level& level, int threads)
 	return before;
 }
 
-// Index of `item` in `list`; appends it if there is no equal one.
-template <class Item> std::size_t addOnce(std::vector<Item>& list, Item item)
-{
-	const auto same = std::find(list.begin(), list.end(), item);
-	const auto index = static_cast<std::size_t>(same - list.begin());
-	if (same == list.end())
-	{
-		list.push_back(std::move(item));
-	}
-	return index;
-}
-
 void appendMaterials(Level& to, Level& from)
 {
 	std::vector<int> masks;
@@ -278,12 +266,12 @@ void appendLevel(Level& to, Level from, glm::dvec3 move)
 	{
 		to.positions.push_back(position + move);
 	}
-	to.normals.insert(to.normals.end(), from.normals.begin(), from.normals.end());
-	to.uvs.insert(to.uvs.end(), from.uvs.begin(), from.uvs.end());
+	append(to.normals, from.normals);
+	append(to.uvs, from.uvs);
 	if (!to.colours.empty() || !from.colours.empty())
 	{
 		to.colours.resize(vertices, glm::vec3(1.0F));
-		to.colours.insert(to.colours.end(), from.colours.begin(), from.colours.end());
+		append(to.colours, from.colours);
 		to.colours.resize(to.positions.size(), glm::vec3(1.0F));
 	}
 	to.sources.clear();
@@ -314,7 +302,7 @@ void appendLevel(Level& to, Level from, glm::dvec3 move)
 	nameCameras(to.cameras);
 	for (const std::string& file : from.files)
 	{
-		addFile(to.files, file);
+		addOnce(to.files, file);
 	}
 }
 

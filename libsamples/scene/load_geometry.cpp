@@ -4,6 +4,7 @@
 #include "core/file.h"
 #include "core/image.h"
 #include "core/isolate.h"
+#include "core/lists.h"
 #include "core/system.h"
 #include "core/words.h"
 #include "scene/load_parts.h"
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numeric>
 #include <unordered_map>
 
 namespace nook
@@ -53,10 +53,9 @@ public:
 		report(m_source.findings, "missing-uvs", m_no_uvs);
 		for (const std::string& file : names())
 		{
-			addFile(m_source.files, file);
+			addOnce(m_source.files, file);
 		}
-		const std::vector<std::string> missing = names();
-		m_source.missing.insert(m_source.missing.end(), missing.begin(), missing.end());
+		append(m_source.missing, names());
 	}
 
 private:
@@ -178,7 +177,7 @@ private:
 		if (!colours.empty() || !m_level.colours.empty())
 		{
 			m_level.colours.resize(before, glm::vec3(1.0F));
-			m_level.colours.insert(m_level.colours.end(), colours.begin(), colours.end());
+			append(m_level.colours, colours);
 			m_level.colours.resize(vertices, glm::vec3(1.0F));
 		}
 		m_from.values(m_level.sources, 3 * kMaxTriangles);
@@ -277,8 +276,7 @@ void decodeMasks(const LoadSettings& settings, LevelSource& source, Level& level
 		{
 			mask.width_px = 256;
 			mask.height_px = 1;
-			mask.alpha.resize(256);
-			std::iota(mask.alpha.begin(), mask.alpha.end(), uint8_t{0});
+			mask.alpha = countingFrom(uint8_t{0}, 256);
 		}
 		else
 		{
@@ -368,7 +366,7 @@ void finishMaterials(const LoadSettings& settings, LevelSource& source, Level& l
 		counts.push_back(source.masks[i].ramp ? countCorners(level, source, static_cast<int>(i)) : countAlpha(level.masks[i]));
 		if (!source.masks[i].path.empty())
 		{
-			addFile(source.files, source.masks[i].path);
+			addOnce(source.files, source.masks[i].path);
 		}
 	}
 	for (const SourceMaterial& from : source.materials)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/load_parts.h"
 
+#include "core/lists.h"
 #include "core/system.h"
 #include "core/words.h"
 
@@ -16,14 +17,6 @@
 
 namespace nook
 {
-
-void addFile(std::vector<std::string>& files, const std::string& path)
-{
-	if (std::find(files.begin(), files.end(), path) == files.end())
-	{
-		files.push_back(path);
-	}
-}
 
 void noteMissingFile(LevelSource& source, const std::string& path)
 {
@@ -208,9 +201,8 @@ void addFindings(Diagnosis& diagnosis, const std::vector<Finding>& findings)
 {
 	for (const Finding& finding : findings)
 	{
-		const auto same = std::find_if(diagnosis.findings.begin(), diagnosis.findings.end(),
-									   [&](const Finding& other) { return other.id == finding.id; });
-		if (same == diagnosis.findings.end())
+		Finding* const same = firstWhere(diagnosis.findings, [&](const Finding& other) { return other.id == finding.id; });
+		if (same == nullptr)
 		{
 			diagnosis.findings.push_back(finding);
 			continue;
@@ -236,11 +228,9 @@ bool isInside(const std::string& level_path, const std::string& path)
 
 void checkInside(const std::string& level_path, const std::string& reference, const std::string& path, const LoadSettings& settings)
 {
-	if (!settings.allow_outside && !isInside(level_path, path)) // a missing file is reported elsewhere
-	{
-		refuseInput(level_path + ": " + reference, path + ", which is outside the level's folder",
-					"a file in it (allow-outside permits others)");
-	}
+	refuseInputIf(!settings.allow_outside && !isInside(level_path, path), // a missing file is reported elsewhere
+				  level_path + ": " + reference, path + ", which is outside the level's folder",
+				  "a file in it (allow-outside permits others)");
 }
 
 } // namespace nook

@@ -138,9 +138,6 @@ void report(std::vector<Finding>& findings, std::string_view id, const Tally& ta
 // Merges findings from reading into those of the triangles, in the table's order.
 void addFindings(Diagnosis& diagnosis, const std::vector<Finding>& findings);
 
-// Adds a path unless it is already listed.
-void addFile(std::vector<std::string>& files, const std::string& path);
-
 // Adds the file to `missing` if it does not exist.
 void noteMissingFile(LevelSource& source, const std::string& path);
 

@@ -3,14 +3,12 @@
 
 #include "core/decimal.h"
 #include "core/file.h"
+#include "core/lists.h"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <span>
 
 namespace nook
 {
@@ -147,9 +145,8 @@ private:
 
 	const Type& typeOf(std::string_view type) const
 	{
-		const auto* const known =
-			std::find_if(kTypes.begin(), kTypes.end(), [&](const Type& one) { return hasWord(one.names, type); });
-		refuseInputIf(known == kTypes.end(), headerPlace(), "an unknown type of number",
+		const auto* const known = firstWhere(kTypes, [&](const Type& one) { return hasWord(one.names, type); });
+		refuseInputIf(known == nullptr, headerPlace(), "an unknown type of number",
 					  "char, uchar, short, ushort, int, uint, float or double");
 		return *known;
 	}
@@ -298,7 +295,7 @@ private:
 		}
 		if (element.name == "face")
 		{
-			mesh.corners.insert(mesh.corners.end(), m_list.begin(), m_list.end());
+			append(mesh.corners, m_list);
 			mesh.ends.push_back(static_cast<uint32_t>(mesh.corners.size()));
 		}
 		for (std::size_t i = 0, begin = 0; element.name == "tristrips" && i < m_list.size(); ++i)

@@ -3,6 +3,7 @@
 // beside it.
 #include "scene/mesh_text.h"
 
+#include "core/lists.h"
 #include "core/system.h"
 
 #include <array>
@@ -218,7 +219,7 @@ private:
 		std::string path = besideLevel(m_path, name);
 		if (!is_file(path))
 		{
-			addFile(m_file.missing, path);
+			addOnce(m_file.missing, path);
 			path = nativePath(m_path).replace_extension(".mtl").string();
 		}
 		if (is_file(path) && std::find(m_file.files.begin(), m_file.files.end(), path) == m_file.files.end())

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/sample_set.h"
 
+#include "core/lists.h"
 #include "core/math.h"
 #include "pattern/methods.h"
 
@@ -45,12 +46,8 @@ float cubeRootNear(float start, float u)
 std::vector<glm::dvec3> lattice(int count)
 {
 	const double g = 1.32471795724474602596;
-	std::vector<glm::dvec3> points;
-	for (int i = 0; i < count; ++i)
-	{
-		points.emplace_back((i + 0.5) / count, fraction(i / g), fraction(i / (g * g)));
-	}
-	return points;
+	return mapped(countingFrom(0, static_cast<std::size_t>(count)),
+				  [=](int i) { return glm::dvec3((i + 0.5) / count, fraction(i / g), fraction(i / (g * g))); });
 }
 
 // Unit vectors in the disk, in order of radius.

@@ -11,7 +11,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -31,10 +30,7 @@ std::vector<uint32_t> weldPositions(std::span<const glm::dvec3> positions, int t
 class Groups
 {
 public:
-	explicit Groups(std::size_t count) : m_parent(count)
-	{
-		std::iota(m_parent.begin(), m_parent.end(), 0U);
-	}
+	explicit Groups(std::size_t count) : m_parent(countingFrom(0U, count)) {}
 	uint32_t rootOf(uint32_t i)
 	{
 		while (m_parent[i] != i)

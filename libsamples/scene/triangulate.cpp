@@ -44,13 +44,8 @@ std::vector<glm::dvec2> flattened(std::span<const glm::dvec3> corners, glm::dvec
 	const int u = (axis + 1) % 3;
 	const int v = (axis + 2) % 3;
 	const double turn = normal[axis] < 0.0 ? -1.0 : 1.0;
-	std::vector<glm::dvec2> flat;
-	flat.reserve(corners.size());
-	for (const glm::dvec3& corner : corners)
-	{
-		flat.emplace_back(corner[u] - corners[0][u], turn * (corner[v] - corners[0][v]));
-	}
-	return flat;
+	return mapped(corners, [&](const glm::dvec3& corner)
+				  { return glm::dvec2(corner[u] - corners[0][u], turn * (corner[v] - corners[0][v])); });
 }
 
 // The remaining polygon, as a ring.

@@ -17,7 +17,6 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -349,9 +348,7 @@ public:
 		}
 		if (options.storage_buffers)
 		{
-			std::vector<int> numbers(packed.clusters.size());
-			std::iota(numbers.begin(), numbers.end(), 0);
-			m_numbers = std::make_unique<GlArray>(bytesOf(numbers), GL_R32I, 4);
+			m_numbers = std::make_unique<GlArray>(bytesOf(countingFrom(0, packed.clusters.size())), GL_R32I, 4);
 			m_commands = GlName(glGenBuffers, glDeleteBuffers);
 			glBindBuffer(GL_ARRAY_BUFFER, m_numbers->buffer);
 			glEnableVertexAttribArray(0);

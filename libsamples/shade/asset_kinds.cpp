@@ -366,9 +366,7 @@ std::span<const AssetKind> assetTable()
 
 const AssetKind* assetNamed(std::string_view name)
 {
-	const std::span<const AssetKind> table = assetTable();
-	const auto found = std::find_if(table.begin(), table.end(), [name](const AssetKind& kind) { return kind.name == name; });
-	return found != table.end() ? &*found : nullptr;
+	return firstWhere(assetTable(), [name](const AssetKind& kind) { return kind.name == name; });
 }
 
 std::vector<const AssetKind*> kindsBesideMethods()

@@ -3,6 +3,7 @@
 
 #include "bake/bake.h"
 #include "core/error.h"
+#include "core/lists.h"
 #include "core/words.h"
 #include "format/tile_json.h"
 #include "methods/feature_checks.h"
@@ -119,7 +120,7 @@ std::vector<float> overStatic(const Static& fixed, const std::vector<float>& kno
 void addTimes(Shaded& shaded, const Shaded& more)
 {
 	shaded.seconds += more.seconds;
-	shaded.passes.insert(shaded.passes.end(), more.passes.begin(), more.passes.end());
+	append(shaded.passes, more.passes);
 }
 
 Shaded drawScreen(const ComposeSettings& settings, const ShadeSamples& samples, const GBuffer& gbuffer, const RunSettings& run)

@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <dlfcn.h>
-#include <string>
 
 namespace nook
 {

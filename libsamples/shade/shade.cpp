@@ -4,7 +4,6 @@
 #include "core/error.h"
 #include "core/lists.h"
 #include "core/parallel.h"
-#include "methods/block.h"
 #include "methods/kernels.h"
 #include "methods/passes.h"
 #include "shade/gl_context.h"
@@ -16,9 +15,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string>
 
 namespace nook
 {

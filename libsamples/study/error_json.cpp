@@ -215,10 +215,8 @@ std::vector<Item> namedFrom(const JsonValue& list, std::string Item::*name, cons
 	for (std::size_t i = 0; i < list.arraySize(); ++i)
 	{
 		Item item = read(list.at(i));
-		if (std::any_of(items.begin(), items.end(), [&](const Item& other) { return other.*name == item.*name; }))
-		{
-			list.at(i).at(by).fail("'" + item.*name + "' twice", "each once");
-		}
+		failIf(std::any_of(items.begin(), items.end(), [&](const Item& other) { return other.*name == item.*name; }),
+			   list.at(i).at(by), "'" + item.*name + "' twice", "each once");
 		items.push_back(std::move(item));
 	}
 	return items;

@@ -83,10 +83,7 @@ public:
 		  m_store(run.units != nullptr ? &run.units->store() : nullptr)
 	{
 		const RendererFacts renderer = rendererOf(m_measure);
-		m_context.renderer = renderer.name;
-		m_context.software = renderer.software;
-		m_context.threads = run.threads;
-		m_context.version = settings.version;
+		m_context = {renderer.name, renderer.software, run.threads, settings.version};
 		if (m_measure.device == Device::gl)
 		{
 			m_measure.session = std::make_shared<GlSession>(m_measure.gl_device);
@@ -307,10 +304,7 @@ private:
 	{
 		for (const std::string& file : files)
 		{
-			if (std::find(m_counts.files.begin(), m_counts.files.end(), file) == m_counts.files.end())
-			{
-				m_counts.files.push_back(file);
-			}
+			addOnce(m_counts.files, file);
 		}
 	}
 

@@ -194,14 +194,6 @@ struct Regression
 	double now = 0.0;
 };
 
-// Errors are the same from run to run on one renderer; another one rounds differently.
-struct BaselineTolerance
-{
-	double share = 0.02;
-	double eq14 = 2e-3;
-	double rmse = 2e-4;
-};
-
 struct BaselineResult
 {
 	std::size_t compared = 0;
@@ -210,6 +202,6 @@ struct BaselineResult
 };
 
 // Times are not compared. Throws Error (invalid_input) where sizes, rays or radii of a view differ: errors of other pictures.
-BaselineResult compareWithBaseline(const ErrorReport& report, const ErrorReport& baseline, const BaselineTolerance& tolerance = {});
+BaselineResult compareWithBaseline(const ErrorReport& report, const ErrorReport& baseline);
 
 } // namespace nook

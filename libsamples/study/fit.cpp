@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <deque>
 #include <map>
 #include <utility>
@@ -403,14 +402,8 @@ void setShape(MethodRecipe& recipe, const CurveShape& shape)
 	for (const auto& [option, value] : {std::pair(kStrength, shape.strength), std::pair(kPower, shape.power)})
 	{
 		const FeatureRow* const feature = &featureOf(option);
-		const auto found = std::find_if(recipe.values.begin(), recipe.values.end(),
-										[=](const RecipeValue& one) { return one.feature == feature; });
-		if (found == recipe.values.end())
-		{
-			recipe.values.push_back({feature, value});
-			continue;
-		}
-		found->value = value;
+		RecipeValue* const found = firstWhere(recipe.values, [=](const RecipeValue& one) { return one.feature == feature; });
+		(found != nullptr ? *found : recipe.values.emplace_back()) = {feature, value};
 	}
 }
 

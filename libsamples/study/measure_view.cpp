@@ -11,7 +11,6 @@
 #include "methods/feature_table.h"
 #include "scene/describe.h"
 #include "scene/reference.h"
-#include "shade/asset_kinds.h"
 #include "shade/gl_context.h"
 #include "shade/shade.h"
 
@@ -19,11 +18,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <cmath>
-#include <map>
 #include <utility>
-#include <vector>
 
 namespace nook
 {

@@ -10,7 +10,6 @@
 #include "format/notes.h"
 #include "page/assets.h"
 #include "page/page_fill.h"
-#include "pattern/recipe.h"
 
 #include <nlohmann/json.hpp>
 
@@ -177,8 +176,8 @@ constexpr std::array kMeasures{"noise", "plane", "bias", "cliff", "centre", "cre
 std::optional<double> measureOf(const Quality& quality, std::string_view name)
 {
 	const std::vector<Measure> all = measuresOf(quality);
-	const auto found = std::find_if(all.begin(), all.end(), [name](const Measure& one) { return one.name == name; });
-	return found != all.end() ? std::optional(found->value) : std::nullopt;
+	const Measure* const found = firstWhere(all, [name](const Measure& one) { return one.name == name; });
+	return found != nullptr ? std::optional(found->value) : std::nullopt;
 }
 
 std::vector<NoiseFit> fitTrends(const std::vector<NoiseRow>& rows)
@@ -224,68 +223,52 @@ Json optionalNumber(const std::optional<double>& value)
 	return value ? Json(rounded(*value)) : Json();
 }
 
-std::vector<const NoiseRow*> rowsOf(const NoiseReport& report, Domain domain, Variant variant, Method method)
-{
-	const auto isWanted = [&](std::size_t i)
-	{
-		const NoiseRow& row = report.rows[i];
-		return row.recipe.domain == domain && row.variant == variant && row.recipe.method == method;
-	};
-	return mapped(indicesWhere(report.rows.size(), isWanted), [&](std::size_t i) { return &report.rows[i]; });
-}
-
-Json measuresJson(const std::vector<const NoiseRow*>& rows)
+Json measuresJson(std::span<const NoiseRow> rows)
 {
 	Json measures = Json::object();
 	for (const char* const measure : kMeasures)
 	{
-		if (measureOf(rows.front()->quality, measure)) // this domain defines it
+		if (measureOf(rows.front().quality, measure)) // this domain defines it
 		{
-			measures[measure] = mapped(rows, [&](const NoiseRow* row) { return optionalNumber(measureOf(row->quality, measure)); });
+			measures[measure] = mapped(rows, [&](const NoiseRow& row) { return optionalNumber(measureOf(row.quality, measure)); });
 		}
 	}
 	return measures;
 }
 
-void addPoints(Json& series, const std::vector<const NoiseRow*>& rows)
+void addPoints(Json& series, std::span<const NoiseRow> rows)
 {
 	series["points"] = Json::array();
 	series["weights"] = Json::array();
-	for (const NoiseRow* row : rows)
+	for (const NoiseRow& row : rows)
 	{
 		Json points = Json::array();
-		Json weights = Json::array();
-		for (std::size_t i = 0; i < row->pattern.count(); ++i)
+		for (const glm::dvec3& p : row.pattern.points)
 		{
-			const glm::dvec3& p = row->pattern.points[i];
 			points.push_back(roundedCoordinate(p.x));
 			points.push_back(roundedCoordinate(p.y));
-			if (!isPlanar(row->pattern.domain))
+			if (!isPlanar(row.pattern.domain))
 			{
 				points.push_back(roundedCoordinate(p.z));
 			}
-			weights.push_back(roundedNumber(row->pattern.weights[i], 4));
 		}
 		series["points"].push_back(points);
-		series["weights"].push_back(weights);
+		series["weights"].push_back(mapped(row.pattern.weights, [](double weight) { return roundedNumber(weight, 4); }));
 	}
 }
 
-Json seriesJson(const NoiseReport& report, Domain domain, Variant variant, Method method, bool with_points)
+// Of rows that have all but the count in common.
+Json seriesJson(std::span<const NoiseRow> rows, bool with_points)
 {
-	const std::vector<const NoiseRow*> rows = rowsOf(report, domain, variant, method);
-	if (rows.empty())
-	{
-		return {};
-	}
+	const Method method = rows.front().recipe.method;
 	Json series;
-	series["domain"] = nameOf(domain);
-	series["variant"] = nameOf(variant);
+	series["domain"] = nameOf(rows.front().recipe.domain);
+	series["variant"] = nameOf(rows.front().variant);
 	series["method"] = nameOf(method);
 	series["weights_rule"] = nameOf(WeightRule::voronoi);
 	series["voronoi"] = "exact";
-	series["counts"] = mapped(rows, [](const NoiseRow* row) { return row->recipe.count; });
-	series["starts"] = mapped(rows, [](const NoiseRow* row) { return row->recipe.starts; });
+	series["counts"] = mapped(rows, [](const NoiseRow& row) { return row.recipe.count; });
+	series["starts"] = mapped(rows, [](const NoiseRow& row) { return row.recipe.starts; });
 	series["measures"] = measuresJson(rows);
 	if (with_points && (method == Method::refine || method == Method::electro))
 	{
@@ -297,21 +280,12 @@ Json seriesJson(const NoiseReport& report, Domain domain, Variant variant, Metho
 Json allSeries(const NoiseReport& report, bool with_points)
 {
 	Json list = Json::array();
-	for (std::size_t d = 0; d < patternDomains().size(); ++d)
+	const auto inSeries = [](const NoiseRow& a, const NoiseRow& b)
 	{
-		for (std::size_t v = 0; v < namesOf<Variant>().size(); ++v)
-		{
-			for (std::size_t m = 0; m < namesOf<Method>().size(); ++m)
-			{
-				Json series =
-					seriesJson(report, static_cast<Domain>(d), static_cast<Variant>(v), static_cast<Method>(m), with_points);
-				if (!series.is_null())
-				{
-					list.push_back(std::move(series));
-				}
-			}
-		}
-	}
+		return a.recipe.domain == b.recipe.domain && a.variant == b.variant && a.recipe.method == b.recipe.method;
+	};
+	eachRun(std::span(report.rows), inSeries,
+			[&](std::span<const NoiseRow> rows) { list.push_back(seriesJson(rows, with_points)); });
 	return list;
 }
 

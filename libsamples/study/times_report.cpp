@@ -85,7 +85,7 @@ TimesReport measureTimes(const TimesSettings& settings, const RunSettings& run)
 	for (const std::string& path : settings.levels)
 	{
 		LoadedLevel loaded = loadLevel(path, {}, run);
-		report.files.insert(report.files.end(), loaded.level.files.begin(), loaded.level.files.end());
+		append(report.files, loaded.level.files);
 		levels.emplace_back(std::move(loaded.level), 0.0, run, samples);
 	}
 	const std::size_t per_view = settings.radii_px.size() * candidates.size();

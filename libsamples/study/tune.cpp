@@ -10,7 +10,6 @@
 #include "scene/camera_choice.h"
 #include "shade/gl_context.h"
 #include "study/fit.h"
-#include "study/measure_view.h"
 
 #include <algorithm>
 #include <chrono>
@@ -18,11 +17,8 @@
 #include <cstddef>
 #include <exception>
 #include <map>
-#include <optional>
 #include <set>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace nook
 {

@@ -105,17 +105,13 @@ std::vector<std::string> failures(const TuneReport& report)
 			lines.push_back("level " + level.given + " is not in these figures: " + level.failed);
 		}
 	}
-	std::size_t failed = 0;
-	const Tried* first = nullptr;
-	for (const Tried& tried : report.search.tried)
+	const std::vector<Tried>& tried = report.search.tried;
+	const std::vector<std::size_t> failed = indicesWhere(tried.size(), [&](std::size_t i) { return !tried[i].failed.empty(); });
+	if (!failed.empty())
 	{
-		first = first == nullptr && !tried.failed.empty() ? &tried : first;
-		failed += tried.failed.empty() ? 0U : 1U;
-	}
-	if (first != nullptr)
-	{
-		lines.push_back(counted(failed, "candidate", "candidates") + (failed == 1 ? " is" : " are") +
-						" not in these figures; the first is " + report.candidates[first->candidate].name() + ": " + first->failed);
+		const Tried& first = tried[failed.front()];
+		lines.push_back(counted(failed.size(), "candidate", "candidates") + (failed.size() == 1 ? " is" : " are") +
+						" not in these figures; the first is " + report.candidates[first.candidate].name() + ": " + first.failed);
 	}
 	if (const std::string busy = busyText(report.busy); !busy.empty())
 	{

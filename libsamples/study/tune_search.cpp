@@ -350,20 +350,13 @@ private:
 		const std::vector<std::size_t> by_wanted = sorted(left, &HalvingSearch::wanted);
 		const std::vector<std::size_t> by_bounded = sorted(left, &HalvingSearch::bounded);
 		std::vector<std::size_t> kept;
-		const auto keep = [&kept](std::size_t i)
-		{
-			if (std::find(kept.begin(), kept.end(), i) == kept.end())
-			{
-				kept.push_back(i);
-			}
-		};
 		if (left.empty())
 		{
 			return kept;
 		}
 		if (bounded(by_bounded.front()) > 1.0)
 		{
-			keep(by_bounded.front()); // nothing may reach the bound: then this is what comes nearest
+			addOnce(kept, by_bounded.front()); // nothing may reach the bound: then this is what comes nearest
 		}
 		for (const auto& [slack, until] : {std::pair(1.0, within), std::pair(slack_here, count)})
 		{
@@ -371,13 +364,13 @@ private:
 			{
 				if (bounded(by_wanted[k]) <= slack)
 				{
-					keep(by_wanted[k]);
+					addOnce(kept, by_wanted[k]);
 				}
 			}
 		}
 		for (std::size_t k = 0; kept.size() < count; ++k)
 		{
-			keep(by_bounded[k]);
+			addOnce(kept, by_bounded[k]);
 		}
 		return kept;
 	}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pattern, tile and filter files: JSON parsed by readPattern, readTile and readFilter; accepted files must be complete.
+// Pattern, tile and filter files: JSON parsed by readPattern, readTile and parseFilter; accepted files must be complete.
 #include "fuzz.h"
 #include "mutate_json.h"
 

@@ -54,7 +54,6 @@ grep -q '^// Made by: nook emit .* --depth device --glsl vulkan$' m.h || problem
 works '' emit --methods vo-line --patterns kept_tile.json --depth device --recipe paper --glsl 330 -o m.glsl -o kept_paper.h
 grep -q 'settings.radius = reach;' kept_paper.h && grep -q 'settings.zero_to_one = false;' kept_paper.h || problem "--recipe paper: found no presets"
 if command -v c++ >../log; then
-	checks=$((checks + 1))
 	printf '#include "m.h"\n#include "kept_paper.h"\nint main() {}\n' >kept_both.cpp
 	c++ -std=c++17 -fsyntax-only kept_both.cpp >../log 2>&1 && problem "two headers of other depths: compiled"
 	grep -q 'reads depth in another way' ../log || problem "two headers of other depths: $(head -n 3 ../log)"
@@ -159,7 +158,6 @@ for target in "330 core" "430 core" "300 es" "450 vulkan"; do
 		grep -q "^// Made by: nook emit --methods $method --glsl $target$" m.glsl || problem "no command in $(head -1 m.glsl)"
 		for stage in "VERTEX vert" "VERTEX_PRISMS vert" "VERTEX_CHOOSE_FACES vert" "VERTEX_ANY_DEPTH vert" "FRAGMENT frag" "RESOLVE frag" "SPARSE frag"; do
 			set -- $stage
-			checks=$((checks + 1))
 			{
 				printf '#version %s\n#define NOOK_%s\n' "$version" "${1%%_*}"
 				[ "$1" = "${1%%_*}" ] || echo "#define NOOK_${1#*_}"

@@ -12,7 +12,7 @@
 namespace nook::test
 {
 
-inline constexpr Domain kDomains[] = {Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere};
+inline constexpr std::array kDomains{Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere};
 
 inline Pattern scatteredPattern(Domain domain, int count, uint64_t seed = 7)
 {

@@ -292,35 +292,31 @@ TEST_CASE("aov: the curve is applied to the sum, not to each volume", "[aov]")
 
 TEST_CASE("aov-mask: directions share the hemisphere evenly, and thresholds the unit interval", "[aov]")
 {
-	for (const int count : {32, 96, 128, 256})
+	const int count = GENERATE(32, 96, 128, 256);
+	const std::vector<glm::vec4> directions = maskDirections(count);
+	glm::dvec3 mean(0.0);
+	double threshold = 0.0;
+	for (const glm::vec4& d : directions)
 	{
-		const std::vector<glm::vec4> directions = maskDirections(count);
-		glm::dvec3 mean(0.0);
-		double threshold = 0.0;
-		for (const glm::vec4& d : directions)
-		{
-			CHECK(glm::length(glm::vec3(d)) == Approx(1.0F).margin(1e-6));
-			CHECK((d.z > 0.0F && d.w > 0.0F && d.w < 1.0F));
-			CHECK((&d == directions.data() || (&d)[-1].z > d.z));
-			mean += glm::dvec3(d) / static_cast<double>(count);
-			threshold += static_cast<double>(d.w) / count;
-		}
-		// Weighted by the cosine, the mean direction is 2/3 of the normal.
-		CHECK(glm::length(mean - glm::dvec3(0, 0, 2.0 / 3.0)) < 0.5 / std::sqrt(count));
-		CHECK(threshold == Approx(0.5).margin(1.0 / count + 0.02));
+		CHECK(glm::length(glm::vec3(d)) == Approx(1.0F).margin(1e-6));
+		CHECK((d.z > 0.0F && d.w > 0.0F && d.w < 1.0F));
+		CHECK((&d == directions.data() || (&d)[-1].z > d.z));
+		mean += glm::dvec3(d) / static_cast<double>(count);
+		threshold += static_cast<double>(d.w) / count;
 	}
+	// Weighted by the cosine, the mean direction is 2/3 of the normal.
+	CHECK(glm::length(mean - glm::dvec3(0, 0, 2.0 / 3.0)) < 0.5 / std::sqrt(count));
+	CHECK(threshold == Approx(0.5).margin(1.0 / count + 0.02));
 }
 
 TEST_CASE("aov-mask: the linear falloff beside a wall, as rays have it", "[aov]")
 {
 	const VolumeSet set = wall(1, 1);
 	const VolumeEvaluator evaluator(set, {}, true);
-	for (const double distance : {0.01, 0.1, 0.3, 0.5, 0.8})
-	{
-		const double expected = raysNextToWall(distance, 1.0);
-		CHECK(1.0 - evaluator.mask({distance, 0, 0}, {0, 1, 0}, 256).visibility == Approx(expected).margin(0.02));
-		CHECK(1.0 - evaluator.mask({distance, 0, 0}, {0, 1, 0}, 32).visibility == Approx(expected).margin(0.08));
-	}
+	const double distance = GENERATE(0.01, 0.1, 0.3, 0.5, 0.8);
+	const double expected = raysNextToWall(distance, 1.0);
+	CHECK(1.0 - evaluator.mask({distance, 0, 0}, {0, 1, 0}, 256).visibility == Approx(expected).margin(0.02));
+	CHECK(1.0 - evaluator.mask({distance, 0, 0}, {0, 1, 0}, 32).visibility == Approx(expected).margin(0.08));
 }
 
 TEST_CASE("aov-mask: polygons cover the directions that cross them, but for a few at their edges", "[aov]")

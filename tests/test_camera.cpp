@@ -105,23 +105,21 @@ std::vector<Case> cases()
 
 TEST_CASE("camera: from a pixel to its line and back", "[camera]")
 {
-	for (const Case& one : cases())
+	const Case one = GENERATE(from_range(cases()));
+	INFO(one.name);
+	const Projector projector(one.projection, kWidth, kHeight);
+	Random random(3);
+	for (int i = 0; i < 200; ++i)
 	{
-		INFO(one.name);
-		const Projector projector(one.projection, kWidth, kHeight);
-		Random random(3);
-		for (int i = 0; i < 200; ++i)
-		{
-			const double x = kWidth * random.uniform();
-			const double y = kHeight * random.uniform();
-			const double depth = kNear * expOf(random.uniform() * logOf(kFar / kNear));
-			const ViewLine line = projector.lineOf({x, y});
-			CHECK(line.along.z == -1.0);
-			CHECK(line.at.z == 0.0);
-			const glm::dvec2 back = projector.pixelOf(line.at + line.along * depth);
-			CHECK(back.x == Approx(x).margin(1e-8));
-			CHECK(back.y == Approx(y).margin(1e-8));
-		}
+		const double x = kWidth * random.uniform();
+		const double y = kHeight * random.uniform();
+		const double depth = kNear * expOf(random.uniform() * logOf(kFar / kNear));
+		const ViewLine line = projector.lineOf({x, y});
+		CHECK(line.along.z == -1.0);
+		CHECK(line.at.z == 0.0);
+		const glm::dvec2 back = projector.pixelOf(line.at + line.along * depth);
+		CHECK(back.x == Approx(x).margin(1e-8));
+		CHECK(back.y == Approx(y).margin(1e-8));
 	}
 }
 
@@ -226,34 +224,33 @@ TEST_CASE("camera: the inside of a solid is told from the outside", "[camera]")
 
 TEST_CASE("camera: chosen views are the same on any number of threads, distinct, and outside of solids", "[camera]")
 {
-	for (const char* const name : {"cornell", "courtyard", "suburb", "foliage", "heightfield:20000", "cave:20000", "nulls"})
+	const char* const name =
+		GENERATE(as<const char*>{}, "cornell", "courtyard", "suburb", "foliage", "heightfield:20000", "cave:20000", "nulls");
+	INFO(name);
+	const Level level = builtinLevel(name);
+	const Tracer tracer(level, {});
+	RunSettings run;
+	const std::vector<LevelCamera> cameras = chooseCameras(tracer, 5, run);
+	REQUIRE(cameras.size() == 5);
+	// More threads give the same views; fewer views are the first of more.
+	run.threads = 4;
+	const std::vector<LevelCamera> again = chooseCameras(tracer, 4, run);
+	REQUIRE(again.size() == 4);
+	for (std::size_t i = 0; i < 4; ++i)
 	{
-		INFO(name);
-		const Level level = builtinLevel(name);
-		const Tracer tracer(level, {});
-		RunSettings run;
-		const std::vector<LevelCamera> cameras = chooseCameras(tracer, 5, run);
-		REQUIRE(cameras.size() == 5);
-		// More threads give the same views; fewer views are the first of more.
-		run.threads = 4;
-		const std::vector<LevelCamera> again = chooseCameras(tracer, 4, run);
-		REQUIRE(again.size() == 4);
-		for (std::size_t i = 0; i < 4; ++i)
+		CHECK(again[i].name == "auto-" + std::to_string(i + 1));
+		CHECK(again[i].world_from_camera == cameras[i].world_from_camera);
+	}
+	const Bounds bounds = boundsOf(level);
+	const double diagonal = glm::length(bounds.most - bounds.least);
+	for (std::size_t i = 0; i < 5; ++i)
+	{
+		CHECK_NOTHROW(checkOutside(tracer, glm::dvec3(cameras[i].world_from_camera[3]), cameras[i].name));
+		for (std::size_t j = 0; j < i; ++j)
 		{
-			CHECK(again[i].name == "auto-" + std::to_string(i + 1));
-			CHECK(again[i].world_from_camera == cameras[i].world_from_camera);
-		}
-		const Bounds bounds = boundsOf(level);
-		const double diagonal = glm::length(bounds.most - bounds.least);
-		for (std::size_t i = 0; i < 5; ++i)
-		{
-			CHECK_NOTHROW(checkOutside(tracer, glm::dvec3(cameras[i].world_from_camera[3]), cameras[i].name));
-			for (std::size_t j = 0; j < i; ++j)
-			{
-				const glm::dvec4 apart = cameras[i].world_from_camera[3] - cameras[j].world_from_camera[3];
-				const double cosine = glm::dot(cameras[i].world_from_camera[2], cameras[j].world_from_camera[2]);
-				CHECK((glm::length(apart) > 0.05 * diagonal || cosine < 0.82));
-			}
+			const glm::dvec4 apart = cameras[i].world_from_camera[3] - cameras[j].world_from_camera[3];
+			const double cosine = glm::dot(cameras[i].world_from_camera[2], cameras[j].world_from_camera[2]);
+			CHECK((glm::length(apart) > 0.05 * diagonal || cosine < 0.82));
 		}
 	}
 }

@@ -5,7 +5,6 @@
 #include "temporary_folder.h"
 #include "testing.h"
 
-
 namespace
 {
 

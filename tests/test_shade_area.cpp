@@ -74,9 +74,7 @@ TEST_CASE("shade: areas in a rectangle of a texture are those of the picture alo
 	// Shifted by texels of the last level: bit-identical.
 	CHECK(areasInTexture(courtyard, samples, settings, 64, 128) == shadeOnCpu(courtyard, samples, settings, {2, {}}).visibility);
 	const GBuffer plane = planeAt(projectionOf(lensOf(60.0), 90.0 / 70.0), 90, 70, 40.0);
-	for (const glm::ivec2 at : {glm::ivec2(5, 3), glm::ivec2(30, 61)})
-	{
-		const std::vector<float> found = areasInTexture(plane, samples, settings, at.x, at.y);
-		CHECK(*std::min_element(found.begin(), found.end()) >= 0.999F);
-	}
+	const glm::ivec2 at = GENERATE(glm::ivec2(5, 3), glm::ivec2(30, 61));
+	const std::vector<float> found = areasInTexture(plane, samples, settings, at.x, at.y);
+	CHECK(*std::min_element(found.begin(), found.end()) >= 0.999F);
 }

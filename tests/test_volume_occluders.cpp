@@ -224,19 +224,17 @@ Level ballWith(int slits)
 
 TEST_CASE("volume: a wall of 2, 200 and 20,000 triangles becomes the same polygon", "[volume][occluders]")
 {
-	for (const int count : {1, 10, 100})
-	{
-		Maker maker;
-		maker.grid(count, tilted, everywhere);
-		REQUIRE(maker.level.triangles.size() == static_cast<std::size_t>(2 * count * count));
-		const Occluding merged = occluders(maker.level);
-		REQUIRE(merged.occluders.polygons.size() == 1);
-		REQUIRE(merged.occluders.polygons[0].corner_count == 4);
-		REQUIRE(merged.counts.regions == 1);
-		Maker single;
-		single.grid(1, tilted, everywhere);
-		REQUIRE(listed(merged.occluders) == listed(occluders(single.level).occluders));
-	}
+	const int count = GENERATE(1, 10, 100);
+	Maker maker;
+	maker.grid(count, tilted, everywhere);
+	REQUIRE(maker.level.triangles.size() == static_cast<std::size_t>(2 * count * count));
+	const Occluding merged = occluders(maker.level);
+	REQUIRE(merged.occluders.polygons.size() == 1);
+	REQUIRE(merged.occluders.polygons[0].corner_count == 4);
+	REQUIRE(merged.counts.regions == 1);
+	Maker single;
+	single.grid(1, tilted, everywhere);
+	REQUIRE(listed(merged.occluders) == listed(occluders(single.level).occluders));
 }
 
 TEST_CASE("volume: walls with windows become the same polygons from any tessellation", "[volume][occluders]")
@@ -317,15 +315,13 @@ TEST_CASE("volume: duplicates go, and a triangle with its back becomes one polyg
 	maker.triangle(b, c, a);
 	maker.triangle(maker.vertex({0, 1, 0}), b, a); // another vertex at the same place
 	maker.level.meshes = {{"made", 0, 3}};
-	for (const nook::Sides sides : {nook::Sides::automatic, nook::Sides::oriented})
-	{
-		nook::OccluderSettings settings{.sides = sides};
-		const Occluding merged = occluders(maker.level, settings);
-		REQUIRE(merged.counts.polygons == 1);
-		REQUIRE(merged.counts.duplicates == 1);
-		REQUIRE(merged.counts.reversed == 1);
-		REQUIRE(merged.occluders.polygons[0].two_sided);
-	}
+	const nook::Sides sides = GENERATE(nook::Sides::automatic, nook::Sides::oriented);
+	nook::OccluderSettings settings{.sides = sides};
+	const Occluding merged = occluders(maker.level, settings);
+	REQUIRE(merged.counts.polygons == 1);
+	REQUIRE(merged.counts.duplicates == 1);
+	REQUIRE(merged.counts.reversed == 1);
+	REQUIRE(merged.occluders.polygons[0].two_sided);
 }
 
 TEST_CASE("volume: closed surfaces are oriented; sheets, rooms and masks have two sides", "[volume][occluders]")
@@ -392,47 +388,45 @@ TEST_CASE("volume: triangles without area change nothing about a closed scan's s
 	const Level whole = ballWith(0);
 	REQUIRE(occluders(whole).counts.closed == 1);
 	REQUIRE(occluders(whole).counts.two_sided == 0);
-	for (const bool cleaned : {false, true})
+	const bool cleaned = GENERATE(false, true);
+	Level level = ballWith(80);
+	if (cleaned)
 	{
-		Level level = ballWith(80);
-		if (cleaned)
+		for (std::size_t i = level.triangles.size(); i-- > 0;)
 		{
-			for (std::size_t i = level.triangles.size(); i-- > 0;)
+			const glm::uvec3& t = level.triangles[i];
+			const std::vector<glm::dvec3>& p = level.positions;
+			if (glm::length(glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x])) == 0.0)
 			{
-				const glm::uvec3& t = level.triangles[i];
-				const std::vector<glm::dvec3>& p = level.positions;
-				if (glm::length(glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x])) == 0.0)
-				{
-					level.triangles.erase(level.triangles.begin() + static_cast<std::ptrdiff_t>(i));
-					level.materials.erase(level.materials.begin() + static_cast<std::ptrdiff_t>(i));
-				}
+				level.triangles.erase(level.triangles.begin() + static_cast<std::ptrdiff_t>(i));
+				level.materials.erase(level.materials.begin() + static_cast<std::ptrdiff_t>(i));
 			}
-			REQUIRE(level.triangles.size() == whole.triangles.size() + 80);
 		}
-		const Occluding made = occluders(level);
-		CHECK(made.counts.components == 1);
-		CHECK(made.counts.closed == 1);
-		CHECK(made.counts.two_sided == 0);
-		CHECK(made.counts.thin == (cleaned ? 0U : 80U));
-		CHECK(areaOf(made.occluders) == Approx(areaOf(whole)).epsilon(1e-6));
-		// Equal volumes, except that some are halved.
-		nook::VolumeSet set;
-		set.distance_m = 0.5;
-		set.exact_bounds = true;
-		nook::VolumeSet expected = set;
-		set.occluders = made.occluders;
-		expected.occluders = occluders(whole).occluders;
-		const nook::VolumeEvaluator of_set(set, kRun);
-		const nook::VolumeEvaluator of_whole(expected, kRun);
-		nook::Random random(8);
-		for (int i = 0; i < 500; ++i)
+		REQUIRE(level.triangles.size() == whole.triangles.size() + 80);
+	}
+	const Occluding made = occluders(level);
+	CHECK(made.counts.components == 1);
+	CHECK(made.counts.closed == 1);
+	CHECK(made.counts.two_sided == 0);
+	CHECK(made.counts.thin == (cleaned ? 0U : 80U));
+	CHECK(areaOf(made.occluders) == Approx(areaOf(whole)).epsilon(1e-6));
+	// Equal volumes, except that some are halved.
+	nook::VolumeSet set;
+	set.distance_m = 0.5;
+	set.exact_bounds = true;
+	nook::VolumeSet expected = set;
+	set.occluders = made.occluders;
+	expected.occluders = occluders(whole).occluders;
+	const nook::VolumeEvaluator of_set(set, kRun);
+	const nook::VolumeEvaluator of_whole(expected, kRun);
+	nook::Random random(8);
+	for (int i = 0; i < 500; ++i)
+	{
+		const glm::dvec3 way = glm::normalize(glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 0.5);
+		for (const double radius : {0.9, 1.05, 1.3})
 		{
-			const glm::dvec3 way = glm::normalize(glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 0.5);
-			for (const double radius : {0.9, 1.05, 1.3})
-			{
-				const double sum = of_whole.occlusion(radius * way, -way);
-				REQUIRE(of_set.occlusion(radius * way, -way) == Approx(sum).margin(0.01));
-			}
+			const double sum = of_whole.occlusion(radius * way, -way);
+			REQUIRE(of_set.occlusion(radius * way, -way) == Approx(sum).margin(0.01));
 		}
 	}
 }
@@ -584,27 +578,26 @@ TEST_CASE("volume: coverage agrees with a dense count", "[volume][occluders]")
 
 TEST_CASE("volume: built-in levels keep their area, on any number of threads", "[volume][occluders]")
 {
-	for (const std::string name : {"cornell", "courtyard", "suburb", "foliage", "heightfield:20000", "cave:20000", "nulls"})
-	{
-		INFO(name);
-		const Level level = nook::builtinLevel(name);
-		const Occluding merged = occluders(level);
-		requireSound(merged.occluders, 1e-4);
-		REQUIRE(merged.counts.fallbacks == 0);
-		REQUIRE(merged.counts.clear == 0);
-		REQUIRE(areaOf(merged.occluders) == Approx(areaOf(level)).epsilon(1e-6));
-		REQUIRE(merged.counts.polygons < merged.counts.triangles);
-		const Occluding cut = nook::occludersOf(level, {}, kRun);
-		requireSound(cut.occluders, 1e-4);
-		REQUIRE(areaOf(cut.occluders) == Approx(areaOf(level)).epsilon(1e-6));
-		nook::OccluderSettings settings{.extent = 0.0};
-		const Occluding alone = nook::occludersOf(level, settings, {1, {}});
-		REQUIRE(alone.occluders.corners == merged.occluders.corners);
-		REQUIRE(std::equal(alone.occluders.polygons.begin(), alone.occluders.polygons.end(), merged.occluders.polygons.begin(),
-						   merged.occluders.polygons.end(),
-						   [](const nook::Occluder& a, const nook::Occluder& b)
-						   { return a.alpha == b.alpha && a.first_corner == b.first_corner && a.two_sided == b.two_sided; }));
-	}
+	const auto name =
+		GENERATE(as<std::string>{}, "cornell", "courtyard", "suburb", "foliage", "heightfield:20000", "cave:20000", "nulls");
+	INFO(name);
+	const Level level = nook::builtinLevel(name);
+	const Occluding merged = occluders(level);
+	requireSound(merged.occluders, 1e-4);
+	REQUIRE(merged.counts.fallbacks == 0);
+	REQUIRE(merged.counts.clear == 0);
+	REQUIRE(areaOf(merged.occluders) == Approx(areaOf(level)).epsilon(1e-6));
+	REQUIRE(merged.counts.polygons < merged.counts.triangles);
+	const Occluding cut = nook::occludersOf(level, {}, kRun);
+	requireSound(cut.occluders, 1e-4);
+	REQUIRE(areaOf(cut.occluders) == Approx(areaOf(level)).epsilon(1e-6));
+	nook::OccluderSettings settings{.extent = 0.0};
+	const Occluding alone = nook::occludersOf(level, settings, {1, {}});
+	REQUIRE(alone.occluders.corners == merged.occluders.corners);
+	REQUIRE(std::equal(alone.occluders.polygons.begin(), alone.occluders.polygons.end(), merged.occluders.polygons.begin(),
+					   merged.occluders.polygons.end(),
+					   [](const nook::Occluder& a, const nook::Occluder& b)
+					   { return a.alpha == b.alpha && a.first_corner == b.first_corner && a.two_sided == b.two_sided; }));
 }
 
 TEST_CASE("volume: without merging there is one polygon a triangle", "[volume][occluders]")
@@ -643,13 +636,11 @@ TEST_CASE("volume: a closed surface is simplified unless its backs are known to 
 	nook::OccluderSettings settings;
 	settings.detail = 0.02;
 	REQUIRE(occluders(level, settings).counts.proxies < level.triangles.size() / 2);
-	for (const uint8_t is_idle : {uint8_t{0}, uint8_t{1}})
-	{
-		settings.one_sided.assign(level.triangles.size(), is_idle);
-		const nook::OccluderCounts counts = occluders(level, settings).counts;
-		REQUIRE((counts.proxies == level.triangles.size()) == (is_idle == 0));
-		REQUIRE(counts.two_sided == 0);
-	}
+	const uint8_t is_idle = GENERATE(uint8_t{0}, uint8_t{1});
+	settings.one_sided.assign(level.triangles.size(), is_idle);
+	const nook::OccluderCounts counts = occluders(level, settings).counts;
+	REQUIRE((counts.proxies == level.triangles.size()) == (is_idle == 0));
+	REQUIRE(counts.two_sided == 0);
 }
 
 TEST_CASE("volume: long polygons are cut, whatever their tessellation", "[volume][occluders]")

@@ -1,38 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The curve fitted to a level, and all steps from a level to its volumes.
-#include "fill.h"
 #include "small_levels.h"
 #include "small_volumes.h"
 #include "testing.h"
 
-#include "core/math.h"
-#include "core/random.h"
-#include "scene/builtin.h"
 #include "volume/build.h"
 #include "volume/evaluate.h"
 #include "volume/trim.h"
-#include "volume/volumes.h"
 
 namespace
 {
-
-// One polygon per triangle.
-VolumeSet volumesOf(const Level& level, double distance_m)
-{
-	VolumeSet set;
-	set.distance_m = distance_m;
-	set.exact_bounds = true;
-	for (std::size_t i = 0; i < level.triangles.size(); ++i)
-	{
-		const auto first = static_cast<uint32_t>(set.occluders.corners.size());
-		set.occluders.polygons.push_back({first, 3, static_cast<uint32_t>(i), 1.0F, false});
-		for (int k = 0; k < 3; ++k)
-		{
-			set.occluders.corners.push_back(level.positions[level.triangles[i][k]]);
-		}
-	}
-	return set;
-}
 
 CompensateSettings fitOf(int views, int per_view, int by_area, int rays)
 {
@@ -46,16 +23,11 @@ CompensateSettings fitOf(int views, int per_view, int by_area, int rays)
 
 VolumeSet squareOf(float reach, float side_reach, bool two_sided)
 {
-	VolumeSet set;
-	set.distance_m = 2.0;
-	set.occluders.corners = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
-	set.occluders.polygons.push_back({0, 4, 0, 1.0F, two_sided});
-	set.occluders.polygons[0].reach = reach;
-	set.occluders.polygons[0].side_reach = side_reach;
+	VolumeSet set = setOf({}, 2.0, false);
+	set.occluders.add({.two_sided = two_sided, .reach = reach, .side_reach = side_reach},
+					  Corners{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 0.0}});
 	return set;
 }
-
-using Corners = std::vector<glm::dvec3>;
 
 // Convex, in a random plane: corners on an ellipse at random angles.
 Corners randomPolygon(nook::Random& random, std::size_t count, double width, double height, glm::dvec3 centre)
@@ -208,7 +180,7 @@ TEST_CASE("compensation: in a corner the curve brings sums to the reference", "[
 	addQuad(level, {0.0, 0.0, 0.0}, {4.0, 0.0, 0.0}, {0.0, 4.0, 0.0});
 	addQuad(level, {0.0, 0.0, 4.0}, {0.0, 0.0, -4.0}, {0.0, 4.0, 0.0});
 	const Tracer tracer(level, {});
-	const VolumeSet set = volumesOf(level, 1.0);
+	const VolumeSet set = setOf(trianglesOf(level), 1.0);
 	const CompensateSettings settings = fitOf(2, 200, 1500, 128);
 	const CompensateResult result = compensateVolumes(set, tracer, settings, {2, {}});
 	REQUIRE(result.trials.size() >= 2);
@@ -597,10 +569,10 @@ TEST_CASE("trim: no receiver loses more than it may, fragments are saved, thread
 	CHECK(counts.trimmed > whole.occluders.polygons.size() / 2);
 
 	const GBuffer gbuffer = castGBuffer(tracer, viewOf(level.cameras.front(), 32, 18), 32, 18, NormalKind::geometric, {});
-	const fill::FillCount of_whole = fill::countFill(gbuffer, whole, {});
-	const fill::FillCount of_cut = fill::countFill(gbuffer, cut, {});
-	INFO(of_whole.fragments << " fragments, " << of_cut.fragments << " of the shortened");
-	CHECK(10 * of_cut.fragments < 9 * of_whole.fragments);
+	const uint64_t of_whole = aovOnGl(gbuffer, whole, {}).counts.fragments;
+	const uint64_t of_cut = aovOnGl(gbuffer, cut, {}).counts.fragments;
+	INFO(of_whole << " fragments, " << of_cut << " of the shortened");
+	CHECK(10 * of_cut < 9 * of_whole);
 
 	VolumeSet again = whole;
 	trimVolumes(again, receivers, settings, {1, {}});

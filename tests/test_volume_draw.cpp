@@ -4,8 +4,6 @@
 #include "small_volumes.h"
 #include "testing.h"
 
-#include "core/random.h"
-#include "scene/builtin.h"
 #include "shade/aov_gl_parts.h"
 #include "shade/gl_context.h"
 #include "volume/compensate.h"

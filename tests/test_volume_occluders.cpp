@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Polygons made from triangles: equal area, convex, and independent of the tessellation.
 #include "level_files.h"
+#include "small_levels.h"
 #include "testing.h"
 
-#include "core/math.h"
-#include "core/random.h"
 #include "scene/builtin.h"
 #include "volume/evaluate.h"
 #include "volume/occluders.h"
@@ -18,27 +17,7 @@ const nook::RunSettings kRun{2, {}};
 
 struct Maker
 {
-	Level level;
-
-	Maker()
-	{
-		level.name = "made";
-		level.material_list.emplace_back();
-	}
-
-	uint32_t vertex(glm::dvec3 position, glm::vec2 uv = {})
-	{
-		level.positions.push_back(position);
-		level.normals.emplace_back(0.0F);
-		level.uvs.push_back(uv);
-		return static_cast<uint32_t>(level.positions.size() - 1);
-	}
-
-	void triangle(uint32_t a, uint32_t b, uint32_t c, uint32_t material = 0)
-	{
-		level.triangles.emplace_back(a, b, c);
-		level.materials.push_back(material);
-	}
+	Level level = emptyLevel();
 
 	// Cells of a grid where `keep` is true, as two triangles each, with alternating diagonals; vertices are never shared.
 	void grid(int count, const std::function<glm::dvec3(double, double)>& at, const std::function<bool(double, double)>& keep,
@@ -59,17 +38,17 @@ struct Maker
 				// From integers, so that adjacent corners are bit-identical.
 				const double u = static_cast<double>(i % count + (corner == 1 || corner == 2 ? 1 : 0)) / count;
 				const double v = static_cast<double>(i / count + (corner >= 2 ? 1 : 0)) / count;
-				corners[static_cast<std::size_t>(corner)] = vertex(at(u, v), glm::vec2(glm::dvec2(u, v)));
+				corners[static_cast<std::size_t>(corner)] = addVertex(level, at(u, v), glm::vec2(glm::dvec2(u, v)));
 			}
 			if (i % 2 == 0)
 			{
-				triangle(corners[0], corners[1], corners[2], material);
-				triangle(corners[0], corners[2], corners[3], material);
+				addTriangle(level, corners[0], corners[1], corners[2], material);
+				addTriangle(level, corners[0], corners[2], corners[3], material);
 			}
 			else
 			{
-				triangle(corners[1], corners[2], corners[3], material);
-				triangle(corners[1], corners[3], corners[0], material);
+				addTriangle(level, corners[1], corners[2], corners[3], material);
+				addTriangle(level, corners[1], corners[3], corners[0], material);
 			}
 		}
 		level.meshes = {{"made", 0, level.triangles.size()}};
@@ -80,17 +59,17 @@ struct Maker
 		std::array<uint32_t, 8> at{};
 		for (uint32_t i = 0; i < 8; ++i)
 		{
-			at[i] = vertex({(i & 1U) != 0 ? most.x : least.x, (i & 2U) != 0 ? most.y : least.y, (i & 4U) != 0 ? most.z : least.z});
+			at[i] = addVertex(
+				level, {(i & 1U) != 0 ? most.x : least.x, (i & 2U) != 0 ? most.y : least.y, (i & 4U) != 0 ? most.z : least.z});
 		}
 		for (const std::array<uint32_t, 4>& face :
 			 {std::array<uint32_t, 4>{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
 		{
 			const uint32_t b = at[face[inside_out ? 3 : 1]];
 			const uint32_t d = at[face[inside_out ? 1 : 3]];
-			triangle(at[face[0]], b, at[face[2]]);
-			triangle(at[face[0]], at[face[2]], d);
+			addTriangle(level, at[face[0]], b, at[face[2]]);
+			addTriangle(level, at[face[0]], at[face[2]], d);
 		}
-		level.meshes = {{"made", 0, level.triangles.size()}};
 	}
 };
 
@@ -194,7 +173,7 @@ Level ballWith(int slits)
 			p[(face + 1) % 3] = u / 8.0 - 1.0;
 			p[(face + 2) % 3] = sign * (v / 8.0 - 1.0);
 			p *= 0x1p20 / glm::length(p);
-			return ball.vertex(glm::dvec3(std::round(p.x), std::round(p.y), std::round(p.z)) * 0x1p-20);
+			return addVertex(ball.level, glm::dvec3(std::round(p.x), std::round(p.y), std::round(p.z)) * 0x1p-20);
 		};
 		for (int i = 0; i < 256; ++i)
 		{
@@ -202,18 +181,18 @@ Level ballWith(int slits)
 			const uint32_t b = at(i % 16 + 1, i / 16);
 			const uint32_t c = at(i % 16 + 1, i / 16 + 1);
 			const uint32_t d = at(i % 16, i / 16 + 1);
-			ball.triangle(a, b, c);
+			addTriangle(ball.level, a, b, c);
 			if (slits > 0 && i % 3 == 0)
 			{
 				slits -= 1;
-				const uint32_t middle = ball.vertex(0.5 * (ball.level.positions[a] + ball.level.positions[c]));
-				ball.triangle(a, middle, d);
-				ball.triangle(middle, c, d);
-				ball.triangle(a, c, middle); // without area
+				const uint32_t middle = addVertex(ball.level, 0.5 * (ball.level.positions[a] + ball.level.positions[c]));
+				addTriangle(ball.level, a, middle, d);
+				addTriangle(ball.level, middle, c, d);
+				addTriangle(ball.level, a, c, middle); // without area
 			}
 			else
 			{
-				ball.triangle(a, c, d);
+				addTriangle(ball.level, a, c, d);
 			}
 		}
 	}
@@ -287,17 +266,16 @@ TEST_CASE("volume: regions that touch in corners keep their area", "[volume][occ
 TEST_CASE("volume: a disk of many corners is cut to sixteen a polygon", "[volume][occluders]")
 {
 	Maker maker;
-	const uint32_t centre = maker.vertex({0, 0, 0});
+	const uint32_t centre = addVertex(maker.level, {0, 0, 0});
 	for (int i = 0; i < 100; ++i)
 	{
 		const nook::SinCos at = nook::sinCosOf(2.0 * nook::kPi * i / 100.0);
-		maker.vertex({at.cos, 0.0, -at.sin});
+		addVertex(maker.level, {at.cos, 0.0, -at.sin});
 	}
 	for (uint32_t i = 0; i < 100; ++i)
 	{
-		maker.triangle(centre, 1 + i, 1 + (i + 1) % 100);
+		addTriangle(maker.level, centre, 1 + i, 1 + (i + 1) % 100);
 	}
-	maker.level.meshes = {{"made", 0, 100}};
 	const Occluding merged = occluders(maker.level);
 	requireSound(merged.occluders, 1e-4);
 	REQUIRE(merged.counts.polygons == 8);
@@ -308,13 +286,12 @@ TEST_CASE("volume: a disk of many corners is cut to sixteen a polygon", "[volume
 TEST_CASE("volume: duplicates go, and a triangle with its back becomes one polygon of two sides", "[volume][occluders]")
 {
 	Maker maker;
-	const uint32_t a = maker.vertex({0, 0, 0});
-	const uint32_t b = maker.vertex({1, 0, 0});
-	const uint32_t c = maker.vertex({0, 1, 0});
-	maker.triangle(a, b, c);
-	maker.triangle(b, c, a);
-	maker.triangle(maker.vertex({0, 1, 0}), b, a); // another vertex at the same place
-	maker.level.meshes = {{"made", 0, 3}};
+	const uint32_t a = addVertex(maker.level, {0, 0, 0});
+	const uint32_t b = addVertex(maker.level, {1, 0, 0});
+	const uint32_t c = addVertex(maker.level, {0, 1, 0});
+	addTriangle(maker.level, a, b, c);
+	addTriangle(maker.level, b, c, a);
+	addTriangle(maker.level, addVertex(maker.level, {0, 1, 0}), b, a); // another vertex at the same place
 	const nook::Sides sides = GENERATE(nook::Sides::automatic, nook::Sides::oriented);
 	nook::OccluderSettings settings{.sides = sides};
 	const Occluding merged = occluders(maker.level, settings);
@@ -695,15 +672,14 @@ TEST_CASE("volume: a surface that overlaps itself keeps all of its area", "[volu
 	for (int i = 0; i <= 30; ++i)
 	{
 		const nook::SinCos at = nook::sinCosOf(3.0 * nook::kPi * i / 30.0);
-		maker.vertex({at.cos, at.sin, 0.0});
-		maker.vertex({2.0 * at.cos, 2.0 * at.sin, 0.0});
+		addVertex(maker.level, {at.cos, at.sin, 0.0});
+		addVertex(maker.level, {2.0 * at.cos, 2.0 * at.sin, 0.0});
 	}
 	for (uint32_t i = 0; i < 30; ++i)
 	{
-		maker.triangle(2 * i, 2 * i + 1, 2 * i + 2);
-		maker.triangle(2 * i + 2, 2 * i + 1, 2 * i + 3);
+		addTriangle(maker.level, 2 * i, 2 * i + 1, 2 * i + 2);
+		addTriangle(maker.level, 2 * i + 2, 2 * i + 1, 2 * i + 3);
 	}
-	maker.level.meshes = {{"made", 0, maker.level.triangles.size()}};
 	const Occluding merged = occluders(maker.level);
 	requireSound(merged.occluders, 1e-4);
 	REQUIRE(merged.counts.regions == 1);

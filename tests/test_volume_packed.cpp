@@ -2,36 +2,21 @@
 // Volumes in clusters and with 16-bit corners: no losses beyond the stated ones.
 #include "small_levels.h"
 #include "small_volumes.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/file.h"
-#include "core/random.h"
 #include "core/text.h"
 #include "scene/load.h"
-#include "volume/packed.h"
 #include "volume/volume_glb.h"
-#include "volume/volumes.h"
 
 #include <meshoptimizer.h>
 
 namespace
 {
 
-using Corners = std::vector<glm::dvec3>;
-
 Corners cornersOf(const VolumeSet& volumes, std::size_t polygon)
 {
-	const Occluder& occluder = volumes.occluders.polygons[polygon];
-	const auto first = volumes.occluders.corners.begin() + occluder.first_corner;
-	return {first, first + occluder.corner_count};
-}
-
-void addPolygon(VolumeSet& volumes, const Corners& corners, float alpha = 1.0F, bool two_sided = false)
-{
-	volumes.occluders.polygons.push_back(
-		{static_cast<uint32_t>(volumes.occluders.corners.size()), static_cast<uint32_t>(corners.size()), 0, alpha, two_sided});
-	volumes.occluders.corners.insert(volumes.occluders.corners.end(), corners.begin(), corners.end());
+	const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(volumes.occluders.polygons[polygon]);
+	return {corners.begin(), corners.end()};
 }
 
 // Polygons of 3 to 8 corners on circles and ellipses anywhere in a box, from millimetres to tens of metres in size.
@@ -59,7 +44,8 @@ VolumeSet randomVolumes(std::size_t count, glm::dvec3 middle = {})
 			const double angle = turn + 6.283185307179586 * i / corners;
 			made.push_back(at + size * (std::cos(angle) * u + std::sin(angle) * v));
 		}
-		addPolygon(volumes, made, static_cast<float>(number(0.01, 1.0)), random.below(2) == 1);
+		const auto alpha = static_cast<float>(number(0.01, 1.0));
+		volumes.occluders.add({.alpha = alpha, .two_sided = random.below(2) == 1}, made);
 	}
 	return volumes;
 }
@@ -262,7 +248,8 @@ TEST_CASE("volume: coordinates that are multiples of the step stay as they are, 
 {
 	const double away = GENERATE(0.0, 8192.0, 1e6 + 0.25);
 	VolumeSet volumes;
-	addPolygon(volumes, {{away, 0.5, 0.25}, {away + 16.0, 0.5, 0.25}, {away + 16.0, 12.125, 0.25}, {away, 12.125, 0.25}});
+	volumes.occluders.add({},
+						  Corners{{away, 0.5, 0.25}, {away + 16.0, 0.5, 0.25}, {away + 16.0, 12.125, 0.25}, {away, 12.125, 0.25}});
 	const VolumeSet exact = clustered(volumes);
 	const PackedVolumes packed = packVolumes(exact, {}, {});
 	CHECK(packed.greatest_error_m == 0.0);
@@ -274,8 +261,9 @@ TEST_CASE("volume: what 16 bits make flat is left out and counted", "[volume][pa
 	VolumeSet volumes;
 	volumes.distance_m = 1.5;
 	// A corner in the middle of an edge, one slightly inside, and a triangle smaller than a step of a cluster of 64 m.
-	addPolygon(volumes, {{0.0, 0.0, 0.0}, {32.0, 0.0, 0.0}, {64.0, 0.0, 0.0}, {64.0, 0.0, -64.0}, {0.0, 0.0, -64.0}});
-	addPolygon(volumes, {{0.0, 1.0, 0.0}, {64.0, 1.0, 0.0}, {64.0, 1.0, -64.0}, {32.0, 1.0, -64.00001}, {0.0, 1.0, -64.0}}, 0.5F);
+	volumes.occluders.add({}, Corners{{0.0, 0.0, 0.0}, {32.0, 0.0, 0.0}, {64.0, 0.0, 0.0}, {64.0, 0.0, -64.0}, {0.0, 0.0, -64.0}});
+	volumes.occluders.add(
+		{.alpha = 0.5F}, Corners{{0.0, 1.0, 0.0}, {64.0, 1.0, 0.0}, {64.0, 1.0, -64.0}, {32.0, 1.0, -64.00001}, {0.0, 1.0, -64.0}});
 	const VolumeSet two = clustered(volumes);
 	const PackedVolumes packed = packVolumes(two, {}, {});
 	CHECK(packed.flat_corners == 2);
@@ -285,7 +273,7 @@ TEST_CASE("volume: what 16 bits make flat is left out and counted", "[volume][pa
 	CHECK(packed.polygons[0].alpha == 65535); // the larger contribution comes first
 	CHECK(packed.polygons[1].alpha == 32768);
 
-	addPolygon(volumes, {{1.0, 2.0, 1.0}, {1.00001, 2.0, 1.0}, {1.00001, 2.0, 1.00001}});
+	volumes.occluders.add({}, Corners{{1.0, 2.0, 1.0}, {1.00001, 2.0, 1.0}, {1.00001, 2.0, 1.00001}});
 	VolumeSet three = clustered(volumes);
 	REQUIRE(three.clusters.size() == 2); // very different sizes are kept apart
 	CHECK(packVolumes(three, {}, {}).flat_polygons == 0);
@@ -449,7 +437,7 @@ TEST_CASE("emit: compressed polygons share corners and are read back unchanged",
 	for (int i = 0; i < kSide * kSide; ++i) // a honeycomb on a slope, and its triangles above
 	{
 		const glm::dvec2 at(2 * (i % kSide) + i / kSide, 2 * (i / kSide));
-		std::vector<glm::dvec3> corners;
+		Corners corners;
 		for (const glm::dvec2 corner : {glm::dvec2(0, 1), {1, 0}, {2, 1}, {2, 2}, {1, 3}, {0, 2}})
 		{
 			corners.emplace_back(0.0625 * (at + corner), 0.01 * (at.x + corner.x));
@@ -459,7 +447,7 @@ TEST_CASE("emit: compressed polygons share corners and are read back unchanged",
 		{
 			corner.z += 0.3;
 		}
-		volumes.occluders.add({}, std::vector{corners[0], corners[2], corners[4]});
+		volumes.occluders.add({}, Corners{corners[0], corners[2], corners[4]});
 	}
 	volumes = clustered(volumes);
 	const VolumeSet plain = unpacked(packVolumes(volumes, {}, {}), volumes);

@@ -178,6 +178,10 @@ fails 1 '--directions: found with another method, expected aov-mask' emit --meth
 fails 1 '--directions: found .?48' emit --methods aov-mask --directions 48 --glsl 330 -o m.glsl
 fails 1 '--directions: found with another method' emit --methods statvo --directions 64 --glsl 330 -o m.glsl
 fails 1 'aov-mask: found --wgsl, which has no logic operations' emit --methods aov-mask --wgsl -o m.wgsl
+fails 1 'm.glsl: found with --wgsl, expected -o FILE.wgsl' emit --methods slices --wgsl -o m.glsl
+fails 1 '--wgsl: missing, expected one for the .wgsl file' emit --methods slices -o m.wgsl
+fails 1 '--glsl: found with --wgsl, expected one language' emit --methods slices --wgsl --glsl 330 -o m.wgsl
+fails 1 '--wgsl: found with --hlsl, expected one language' emit --methods slices --wgsl --hlsl 60 -o m.wgsl
 fails 1 'm.glsl: found with --hlsl, expected -o FILE.hlsl' emit --methods aov --hlsl 60 -o m.glsl
 fails 1 'm.h: found no shader' emit --methods aov --glsl 330 -o m.h
 fails 1 '--methods:.*or aov or aov-mask alone' emit --methods aov,statvo --glsl 330 -o m.glsl

@@ -4,8 +4,6 @@
 
 #include "testing.h"
 
-#include "core/file.h"
-#include "core/random.h"
 #include "core/round.h"
 #include "format/pattern_file.h"
 

@@ -47,6 +47,38 @@ inline shade_kernels::Kernels kernelsOver(const GBuffer& gbuffer, const ShadeSam
 	return kernels;
 }
 
+// Likewise, where the picture is a rectangle, from `at`, of a texture that is otherwise NaN.
+struct InTexture
+{
+	std::vector<float> depths;
+	std::vector<glm::vec3> normals;
+	shade_kernels::Kernels kernels;
+
+	InTexture(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, glm::ivec2 at)
+	{
+		const int stride = at.x + gbuffer.width_px + 11;
+		const auto size = static_cast<std::size_t>(stride * (at.y + gbuffer.height_px + 7));
+		depths.assign(size, std::numeric_limits<float>::quiet_NaN());
+		normals.assign(size, glm::vec3(std::numeric_limits<float>::quiet_NaN()));
+		const std::vector<float> picture = finiteDepths(gbuffer);
+		for (int i = 0; i < gbuffer.width_px * gbuffer.height_px; ++i)
+		{
+			const auto to = static_cast<std::size_t>((at.y + i / gbuffer.width_px) * stride + at.x + i % gbuffer.width_px);
+			depths[to] = picture[static_cast<std::size_t>(i)];
+			normals[to] = gbuffer.normals[static_cast<std::size_t>(i)];
+		}
+		kernels.nook = blockOf(frameOf(gbuffer), samples, settings);
+		kernels.nook.origin = at;
+		kernels.nook.first = at;
+		kernels.nook.last = at + glm::ivec2(gbuffer.width_px - 1, gbuffer.height_px - 1);
+		kernels.depths = depths;
+		kernels.normals = normals;
+		kernels.samples = samples.samples;
+		kernels.stride = stride;
+	}
+	InTexture& operator=(InTexture&&) = delete;
+};
+
 inline void checkOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, double most_off = 1e-3)
 {
 	const Shaded gl = shadeOnGl(gbuffer, samples, settings);

@@ -4,7 +4,6 @@
 
 #include "testing.h"
 
-#include "core/math.h"
 #include "scene/builtin.h"
 #include "scene/gbuffer.h"
 

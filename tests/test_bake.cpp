@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Visibility at vertices compared with closed forms and with rays.
 #include "bake_levels.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "bake/bake.h"
 #include "bake/probes.h"
 #include "bake/surface_samples.h"
-#include "core/file.h"
 #include "core/json_reader.h"
 #include "scene/gbuffer.h"
 #include "scene/level_glb.h"

@@ -2,15 +2,10 @@
 // Visibility in a texture compared with rays; charts and their edges.
 #include "bake_levels.h"
 #include "level_files.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "bake/bake.h"
 #include "bake/texture.h"
-#include "core/file.h"
 #include "scene/level_glb.h"
-#include "scene/load.h"
-#include "scene/load_parts.h"
 
 #include <tuple>
 
@@ -33,6 +28,15 @@ Level floorAndBoxWithCharts()
 		level.uvs[v] = corner + size * level.uvs[v];
 	}
 	return level;
+}
+
+// Gives the material a mask of one texel.
+void addMask(Level& level)
+{
+	level.material_list[0].alpha_mode = AlphaMode::mask;
+	level.material_list[0].mask = 0;
+	level.masks.push_back({"leaf", 1, 1, Wrap::repeat, Wrap::repeat, {255}});
+	measureAlpha(level.material_list[0], level.masks);
 }
 
 // A quad at y = 0 and its other side at the same place, of two triangles each; the last one of the back is wound like the front.
@@ -282,10 +286,7 @@ TEST_CASE("bake: empty texels are filled from their nearest neighbours", "[bake]
 TEST_CASE("bake: a second set of coordinates is read where it is asked for, and written beside a mask's", "[bake][emit]")
 {
 	Level level = floorAndBoxWithCharts();
-	level.material_list[0].alpha_mode = AlphaMode::mask;
-	level.material_list[0].mask = 0;
-	level.masks.push_back({"leaf", 1, 1, Wrap::repeat, Wrap::repeat, {255}});
-	measureAlpha(level.material_list[0], level.masks);
+	addMask(level);
 	std::vector<glm::vec2> second = level.uvs;
 	for (glm::vec2& uv : second)
 	{
@@ -350,10 +351,7 @@ TEST_CASE("bake: a second set of coordinates is read of sheets whose triangles w
 						0.125F * static_cast<float>(level.positions[v].z + 2.0)};
 	}
 	level.material_list[0].two_sided = true;
-	level.material_list[0].alpha_mode = AlphaMode::mask;
-	level.material_list[0].mask = 0;
-	level.masks.push_back({"leaf", 1, 1, Wrap::repeat, Wrap::repeat, {255}});
-	measureAlpha(level.material_list[0], level.masks);
+	addMask(level);
 	std::vector<glm::vec2> second = level.uvs;
 	for (glm::vec2& uv : second)
 	{

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "testing.h"
 
-#include "core/math.h"
 #include "pattern/cells.h"
 #include "pattern/energy.h"
 #include "pattern/energy_kernels.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "testing.h"
 
-#include "core/random.h"
 #include "image/compare.h"
 #include "image/drawing.h"
 #include "image/visibility_image.h"

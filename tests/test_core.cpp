@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "temporary_folder.h"
 #include "testing.h"
 
 #include "core/decimal.h"
-#include "core/file.h"
 #include "core/isolate.h"
-#include "core/math.h"
 #include "core/parallel.h"
 #include "core/progress.h"
-#include "core/random.h"
 
 #include <sys/wait.h>
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit_samples.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/file.h"
 #include "core/image.h"
 #include "core/text.h"
 #include "format/arrays.h"

@@ -2,10 +2,8 @@
 // Emitted C headers, GLSL and HLSL: their numbers, their names, and whether they compile.
 #include "emit_samples.h"
 #include "other_tools.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/file.h"
 #include "format/arrays.h"
 #include "format/pattern_file.h"
 

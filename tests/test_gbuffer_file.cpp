@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "small_gbuffers.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/file.h"
 #include "methods/block.h"
 #include "scene/gbuffer.h"
 #include "shade/shade.h"

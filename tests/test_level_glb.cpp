@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "level_files.h"
 #include "small_levels.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
 #include "scene/builtin.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "testing.h"
 
-#include "core/math.h"
 #include "emit/catalogue.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"

@@ -2,7 +2,6 @@
 // The tables of methods and features: consistency of rows, round trips of setters, words and commands.
 #include "testing.h"
 
-#include "core/decimal.h"
 #include "methods/feature_table.h"
 #include "methods/method_table.h"
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Modules for Vulkan and HLSL, compiled by glslang and dispatched by a Vulkan driver: pixels decide, not compilers.
-#include "picture_errors.h"
 #include "small_modules.h"
 #include "small_views.h"
 #include "testing.h"

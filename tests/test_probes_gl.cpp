@@ -4,7 +4,6 @@
 #include "testing.h"
 
 #include "bake/probes.h"
-#include "core/random.h"
 #include "shade/gl_context.h"
 
 #include <epoxy/gl.h>

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reference visibility compared with closed forms.
 #include "small_levels.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/file.h"
-#include "core/random.h"
 #include "scene/reference.h"
 #include "scene/sample_set.h"
 

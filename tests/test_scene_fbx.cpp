@@ -2,10 +2,7 @@
 // FBX files generated here, and what must be read from them.
 #include "fbx_files.h"
 #include "small_levels.h"
-#include "temporary_folder.h"
 #include "testing.h"
-
-#include "core/math.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Strict text formats: numbers and keywords are read; anything else is rejected with its line.
 #include "level_files.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/json_reader.h"
-#include "core/json_text.h"
 #include "scene/mesh_text.h"
 #include "scene/reference.h"
 

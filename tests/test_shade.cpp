@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Screen-space methods compared with planes and closed forms, and the CPU with OpenGL.
-#include "picture_errors.h"
 #include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
-#include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "scene/reference.h"
-#include "shade/shade.h"
 
 namespace
 {

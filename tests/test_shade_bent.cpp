@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bent normals of slices: sums of directions in closed form, planes, a corner, rays, and the CPU compared with OpenGL.
-#include "picture_errors.h"
 #include "small_gbuffers.h"
 #include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
-#include "methods/block.h"
 #include "scene/reference.h"
 #include "scene/tracer.h"
-#include "shade/shade.h"
 
 namespace
 {

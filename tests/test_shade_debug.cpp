@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Debug views: expected values for planes, steps and bands, consistency with other outputs, and the CPU compared with OpenGL.
-#include "picture_errors.h"
 #include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
-#include "pattern/recipe.h"
 #include "pattern/tile.h"
-#include "shade/shade.h"
 
 namespace
 {

@@ -4,12 +4,9 @@
 #include "small_views.h"
 #include "testing.h"
 
-#include "methods/block.h"
 #include "methods/passes.h"
-#include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "shade/run_passes.h"
-#include "shade/shade.h"
 
 namespace
 {

@@ -4,8 +4,6 @@
 #include "small_views.h"
 #include "testing.h"
 
-#include "core/random.h"
-
 namespace
 {
 

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Coarser depth levels for distant samples.
-#include "picture_errors.h"
 #include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
-#include "methods/block.h"
 #include "methods/passes.h"
-#include "pattern/recipe.h"
-#include "shade/shade.h"
 
 namespace
 {

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Published methods: closed forms, results on open planes, and the CPU compared with OpenGL.
-#include "picture_errors.h"
 #include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
-#include "methods/block.h"
 #include "methods/passes.h"
-#include "pattern/recipe.h"
 #include "pattern/tile.h"
-#include "shade/shade.h"
 
 namespace
 {

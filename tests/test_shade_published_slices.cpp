@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Published GTAO and bit masks: a step compared with their integrals, thin objects, their window of variants, rays.
-#include "picture_errors.h"
 #include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
-#include "methods/block.h"
 #include "scene/reference.h"
 #include "scene/tracer.h"
-#include "shade/shade.h"
 
 namespace
 {

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Slices: their measure in closed form, planes, a step compared with its integral, rays, and the CPU compared with OpenGL.
-#include "picture_errors.h"
 #include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
-#include "methods/block.h"
 #include "pattern/tile.h"
-#include "scene/reference.h"
 #include "scene/tracer.h"
-#include "shade/shade.h"
 
 namespace
 {

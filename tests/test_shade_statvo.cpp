@@ -4,10 +4,7 @@
 #include "small_views.h"
 #include "testing.h"
 
-#include "core/random.h"
 #include "scene/reference.h"
-#include "shade/gl_context.h"
-#include "shade/shade.h"
 
 namespace
 {

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // StatVO's tables: their precision, agreement of all ways to compute them, and the effect of skipping layers.
-#include "picture_errors.h"
 #include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
-#include "core/random.h"
 #include "shade/gl_context.h"
 #include "shade/run_passes.h"
-#include "shade/shade.h"
 
 #include <epoxy/gl.h>
 

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volumetric obscurance with further features: areas, thickness, falloff, two radii, pairs, bands.
-#include "picture_errors.h"
 #include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
-#include "core/random.h"
-#include "methods/block.h"
-#include "methods/kernels.h"
-#include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "scene/reference.h"
-#include "shade/shade.h"
 
 namespace
 {
@@ -212,9 +206,7 @@ TEST_CASE("shade: two radii are the product or the lesser of one radius each", "
 	Recipe recipe = diskRecipe(9);
 	recipe.domain = domainOf(method);
 	const ShadeSamples samples = samplesOf(method, {generatePattern(recipe)});
-	ShadeSettings settings;
-	settings.method = method;
-	settings.radius_m = 0.2;
+	ShadeSettings settings = settingsFor(method, 0.2);
 	const std::vector<float> small = visibilityOf(gbuffer, samples, settings);
 	settings.radius_m = 0.6;
 	const std::vector<float> large = visibilityOf(gbuffer, samples, settings);
@@ -268,9 +260,7 @@ TEST_CASE("shade: OpenGL agrees with the CPU on every feature of volumetric obsc
 	std::vector<Pattern> variants = generateTile(generatePattern(recipe), random, {}).variants;
 	for (const int feature : {0, 1, 2, 3})
 	{
-		ShadeSettings settings;
-		settings.method = method;
-		settings.radius_m = 1.0;
+		ShadeSettings settings = settingsFor(method, 1.0);
 		settings.use_normal = feature != 3;
 		settings.volume.thickness_m = feature == 1 ? 0.3 : 0.0;
 		settings.volume.quadratic = feature == 2;

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The store of finished work: archives, values on disk, units of a stage and their shares.
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/file.h"
-#include "core/random.h"
 #include "core/work_units.h"
 
 #include <glm/mat4x4.hpp>

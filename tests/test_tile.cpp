@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "testing.h"
 
-#include "core/random.h"
 #include "pattern/energy.h"
 #include "pattern/pattern.h"
 #include "pattern/recipe.h"

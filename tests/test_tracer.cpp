@@ -3,7 +3,6 @@
 #include "small_levels.h"
 #include "testing.h"
 
-#include "core/random.h"
 #include "scene/builtin.h"
 #include "scene/ray_triangle.h"
 #include "scene/reference.h"

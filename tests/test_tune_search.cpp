@@ -2,7 +2,6 @@
 // The search of nook tune on grids whose every value is known.
 #include "testing.h"
 
-#include "core/random.h"
 #include "study/tune.h"
 #include "study/tune_search.h"
 

@@ -13,14 +13,12 @@ works '"rmse": 0[.][01]' bake builtin:cornell --radius 0.5 --json -
 works '"fit": "points"' bake builtin:cornell --radius 0.5 --fit points --json -
 works '' bake builtin:cornell --radius 0.5 --rays 16 -o plain.glb --json s.json
 works '' bake builtin:cornell --radius 0.5 --rays 16 --color -o colors.glb --json s.json
-checks=$((checks + 1))
 grep -aq COLOR_0 colors.glb && ! grep -aq COLOR_0 plain.glb || problem "--color: found it in both files or in none"
 there colors.glb plain.glb s.json
 works '^bent normals: [0-9.]* degrees' bake builtin:cornell --radius 0.5 --rays 16 --bent -o bent.glb
 works '"bent_angle_deg": ' bake builtin:cornell --radius 0.5 --rays 16 --bent --fit points --json -
 works '"sides": "mean"' bake builtin:foliage --radius 0.5 --rays 1 --sides mean --json - -o mean.glb
 works '"sides": "separate"' bake builtin:foliage --radius 0.5 --rays 1 --json - -o sides.glb
-checks=$((checks + 1))
 grep -aq _BENT_NORMAL bent.glb && ! grep -aq _BENT_NORMAL sides.glb || problem "--bent: found it in both files or in none"
 grep -aq _VISIBILITY_BACK sides.glb && ! grep -aq _VISIBILITY_BACK mean.glb || problem "--sides: found backs in both files or in none"
 there bent.glb mean.glb sides.glb
@@ -33,7 +31,6 @@ works '"falloff_u_m": 0.05' bake builtin:cornell --radius 0.5 --falloff alchemy 
 works '"stopped_by": "(max-error|shortest-edge)"' bake builtin:cornell --radius 0.5 --max-error 0.05 --json -
 works '^refined: ' bake builtin:cornell --radius 0.5 --max-error 0.1 -o b.glb
 there b.glb
-checks=$((checks + 1))
 "$nook" bake builtin:cornell --radius 0.5 --max-error 0.01 --max-vertices 200 --json s.json -o b.glb 2>../stderr
 grep -q '^nook: warning: --max-vertices: 200 left [0-9]* triangles with errors above 0.01$' ../stderr || problem "--max-vertices: found '$(cat ../stderr)'"
 grep -q '"stopped_by": "max-vertices"' s.json || problem "--max-vertices: found $(cat s.json)"
@@ -41,13 +38,11 @@ there b.glb s.json
 
 works '^probes: ' bake builtin:cornell --radius 0.5 --probes 0.2 --rays 60 -o p.ktx2 -o p.glsl
 # The texture is VK_FORMAT_R8G8B8A8_UNORM with the number of texels that the function states.
-checks=$((checks + 1))
 [ "$(od -An -tu4 -j12 -N4 p.ktx2 | tr -d ' ')" = 37 ] || problem "p.ktx2: found another format than 37"
 size=$(od -An -tu4 -j20 -N12 p.ktx2 | awk '{ print $1 ", " $2 ", " $3 }')
 grep -q "ivec3($size);" p.glsl || problem "p.ktx2: found $size texels, expected those of $(grep ivec3 p.glsl | head -n 1)"
 if command -v glslangValidator >../stdout; then
 	for version in '330 core' '300 es'; do
-		checks=$((checks + 1))
 		{
 			printf '#version %s\n#ifdef GL_ES\nprecision highp float;\nprecision highp int;\nprecision highp sampler3D;\n#endif\n' "$version"
 			cat p.glsl
@@ -100,7 +95,6 @@ fails 3 'kept_outside.obj: texture coordinates: found some from' bake kept_outsi
 fails 3 'kept_without.obj: texture coordinates: found none' bake kept_without.obj --radius 1 --texture 64 -o t.glb
 fails 3 'builtin:cornell: texture coordinates: found' bake builtin:cornell --radius 1 --texture 64 -o t.glb
 works '"png_bytes": ' bake kept_box.obj --radius 0.5 --texture 64 --rays 16 -o p.exr -o p.png -o t.glb -o p.ktx2 --json -
-checks=$((checks + 1))
 [ "$(wc -c <p.ktx2)" -gt $((8 * (256 + 64 + 16 + 4 + 1 + 1 + 1))) ] || problem "p.ktx2: found $(wc -c <p.ktx2) bytes, expected seven levels"
 there p.exr p.ktx2 p.png t.glb
 fails 1 'p.png: found' bake kept_box.obj --radius 0.5 -o p.png
@@ -149,7 +143,6 @@ works '' volumes kept_still.obj --distance 0.6 --ray-distance 1 -o kept_v.glb --
 works '"beside": "aov",' bake kept_still.obj --radius 1 --falloff linear --volumes kept_v.glb -o kept_d.glb --json -
 # Warns if volumes are closer to rays than a bake with few rays.
 works '' volumes builtin:heightfield:2000 --distance 6 --ray-distance 10 --exact-bounds -o hills_v.glb --json s.json
-checks=$((checks + 1))
 "$nook" bake builtin:heightfield:2000 --radius 10 --falloff linear --rays 4 --volumes hills_v.glb -o hills_d.glb --json s.json 2>../stderr
 grep -q '^nook: warning: hills_v.glb: found an RMSE of .* with the difference baked, expected less than the .* of the volumes alone' ../stderr ||
 	problem "--volumes that are nearer alone: found '$(cat ../stderr)'"
@@ -189,7 +182,6 @@ fails 1 '--directions: found .33.' bake kept_still.obj --radius 1 --volumes kept
 fails 1 '--volumes: found with --bent' bake kept_still.obj --radius 1 --volumes kept_v.glb --bent -o b.glb
 fails 3 'kept_b.glb: ' bake kept_still.obj --radius 1 --volumes kept_b.glb -o b.glb
 # A value out of range: the first float of the file that is 1.
-checks=$((checks + 1))
 "$nook" bake kept_still.obj --radius 0.01 --rays 1 -o kept_b.glb --json s.json
 LC_ALL=C sed 's/\x00\x00\x80\x3f\x00\x00\x80\x3f\x00\x00\x80\x3f/\x00\x00\x80\x40\x00\x00\x80\x40\x00\x00\x80\x40/g' kept_b.glb >kept_bad.glb
 cmp -s kept_b.glb kept_bad.glb && problem "kept_bad.glb: found nothing changed"
@@ -218,7 +210,6 @@ printf '\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000
 additions()
 {
 	command -v python3 >../stdout || return
-	checks=$((checks + 1))
 	python3 "$source/tests/additions.py" "$@" >../log 2>&1 || problem "additions $*: $(cat ../log)"
 }
 mkdir kept_folder
@@ -233,7 +224,6 @@ works '"mesh_copies": 0' bake kept_3.glb --radius 1 --rays 32 --instances shared
 works '' bake kept_two.gltf --radius 1 --rays 32 -o kept_5.gltf --json s.json
 works '' bake kept_5.gltf --radius 1 --rays 32 --to color-alpha -o kept_6.gltf --json s.json
 works '' bake kept_6.gltf --radius 1 --rays 32 -o kept_6.gltf --json s.json
-checks=$((checks + 1))
 sed 's/kept_[26].gltf/kept_two.gltf/' kept_6.gltf | cmp -s - kept_5.gltf || problem "baking again: found another file than baking once"
 # Edited by hand after the bake: its undo may mean other items.
 works '' bake kept_two.gltf --radius 1 --rays 32 --to color -o kept_8.gltf --json s.json
@@ -251,17 +241,13 @@ fails 5 'kept_two.gltf: nodes\[0\].extras: found no object' bake kept_two.gltf -
 sed 's/"extras": 3/"extras": {"a": 3}/' kept_two.gltf >kept_other.gltf
 works '"mesh_copies": 0' bake kept_other.gltf --radius 1 --rays 32 --instances attribute -o kept_7.gltf --json -
 additions kept_other.gltf kept_7.gltf
-checks=$((checks + 1))
 grep -q nook_visibility kept_7.gltf || problem "--instances attribute: found no factor"
 works '' bake kept_two.gltf --radius 1 --rays 32 -o values.csv -o values.npy -o values.json --json s.json
-checks=$((checks + 1))
 [ "$(wc -l <values.csv)" -eq 9 ] || problem "values.csv: found $(wc -l <values.csv) lines, expected two nodes of four vertices"
 there s.json values.csv values.json values.npy
 sed 's/"doubleSided": true/&, "alphaMode": "BLEND"/' kept_two.gltf >kept_other.gltf
 "$nook" bake kept_other.gltf --radius 1 --rays 32 --to color-alpha -o blend.csv >../stdout 2>../log
-checks=$((checks + 1))
 grep -q 'color-alpha: 1 materials have no value' ../log || problem "--to color-alpha: found no warning: $(cat ../log)"
-checks=$((checks + 1))
 [ "$(cut -d, -f5 blend.csv | sort -u | wc -l)" -eq 2 ] || problem "blend.csv: found values of a material that has none: $(sort -u blend.csv)"
 fails 3 'kept_two.gltf: TEXCOORD_0: found it in use, expected a set that is free, as --to texcoord:1' bake kept_two.gltf --radius 1 --to texcoord:0 -o b.gltf
 sed 's/"COLOR_0"/"_VISIBILITY"/' kept_two.gltf >kept_other.gltf
@@ -277,19 +263,16 @@ done
 unwrapped()
 {
 	command -v python3 >../stdout || return
-	checks=$((checks + 1))
 	python3 "$source/tests/unwrapped.py" "$@" >../log 2>&1 || problem "unwrapped $*: $(cat ../log)"
 }
 works '^unwrapped: 2 charts on 1 page, texels of 0.0[0-9]* m, coverage 0.[3-9][0-9]*, stretch 1' bake kept_two.gltf --radius 1 --rays 8 --unwrap --texture 64 -o kept_u.gltf --threads 1
 unwrapped kept_two.gltf kept_u.gltf
 works '"shared_meshes": 1' bake kept_u.gltf --radius 1 --rays 8 --unwrap --texture 64 -o kept_v.gltf --threads 2 --json -
-checks=$((checks + 1))
 sed 's/kept_[uv].gltf/kept_two.gltf/' kept_v.gltf >b.gltf
 sed 's/kept_[uv].gltf/kept_two.gltf/' kept_u.gltf | cmp -s - b.gltf || problem "--unwrap again: found another file than once"
 works '"pages": [23],' bake kept_two.gltf --radius 1 --rays 8 --unwrap --texture 32 --texel-size 0.1 --pages 4 --margin 1 -o kept_w.glb --json -
 unwrapped kept_two.gltf kept_w.glb
 works '' bake kept_two.gltf --radius 1 --rays 8 --unwrap --texture 32 --texel-size 0.1 --pages 4 --margin 1 -o b.png -o b.glb --json s.json
-checks=$((checks + 1))
 [ -s b-1.png ] && [ -s b-2.png ] && [ -s b.glb ] || problem "--pages: found $(echo b*), expected a picture for each page"
 rm -f b-*.png
 fails 1 '--unwrap: found only textures to write' bake kept_two.gltf --radius 1 --unwrap -o b.png
@@ -318,7 +301,6 @@ for parts in 'Lamp*' '/Lamp*' 'Lamp? old' 'none,Lamp*'; do
 	none*) fails 1 "--ignore: found 'none', expected parts of kept_parts.gltf: '/Lamp, old/meshes" bake kept_parts.gltf --radius 1 --ignore "$parts" -o b.csv ;;
 	*)
 		works '' bake kept_parts.gltf --radius 1 --rays 32 --ignore "$parts" -o b.csv --json s.json
-		checks=$((checks + 1))
 		cmp -s b.csv kept_alone.csv || problem "--ignore $parts: found other values than without the part"
 		;;
 	esac
@@ -326,13 +308,11 @@ done
 rm -f b.csv blend.csv
 works '"receivers": ."extras:kind=floor".' bake kept_parts.gltf --radius 1 --rays 32 --occluders low --receivers extras:kind=floor --threads 1 -o kept_7.gltf -o b.csv --json -
 additions kept_parts.gltf kept_7.gltf
-checks=$((checks + 1))
 [ "$(grep -c '_VISIBILITY"' kept_7.gltf)" -eq 1 ] && [ "$(grep -o '"mesh": [0-9]' kept_7.gltf | tr '\n' ' ')" = '"mesh": 1 "mesh": 0 ' ] ||
 	problem "--receivers: found $(grep -o '"mesh": [0-9]' kept_7.gltf | tr '\n' ' '), expected a copy for the receiver alone"
 [ "$(cut -d, -f1 b.csv | sort -u | tr '\n' ' ')" = '0 node ' ] || problem "--receivers: found other nodes in $(cat b.csv)"
 cut -d, -f5 b.csv | grep -v '^1$' | grep -qv visibility && problem "--occluders: found values other than 1 in $(cat b.csv)"
 works '' bake kept_parts.gltf --radius 1 --rays 32 --occluders low --receivers extras:kind=floor --threads 2 -o b.gltf --json s.json
-checks=$((checks + 1))
 sed 's/b.gltf/kept_7.gltf/' b.gltf | cmp -s - kept_7.gltf || problem "--receivers: found other bytes with two threads"
 there b.csv b.gltf s.json
 works '' bake kept_still.obj --radius 1 --rays 32 --receivers '*' -o b.glb --json s.json
@@ -341,7 +321,6 @@ there b.glb s.json
 for how in --unwrap '--to texture'; do
 	# shellcheck disable=SC2086 # words
 	works '' bake kept_parts.gltf --radius 1 --rays 4 --receivers extras:kind=floor $how --texture 64 -o b.gltf --json s.json
-	checks=$((checks + 1))
 	found=$(grep -o '"mesh": [0-9]\|"material": [0-9]\|occlusionTexture' b.gltf | tr '\n' ' ')
 	[ "$found" = '"mesh": 1 "mesh": 0 occlusionTexture occlusionTexture "material": 0 "material": 1 ' ] ||
 		problem "--receivers $how: found '$found', expected a mesh and a material for the receiver alone"

@@ -9,52 +9,7 @@ if ! command -v python3 >../stdout; then
 	echo "no python3"
 	exit 77
 fi
-cat >../files.py <<'EOT'
-import base64, json, struct, sys, zlib
-
-
-def png(path, width, height, rgba):
-    part = lambda kind, data: struct.pack('>I', len(data)) + kind + data + struct.pack('>I', zlib.crc32(kind + data))
-    rows = b''.join(b'\0' + bytes(rgba[4 * width * y:4 * width * (y + 1)]) for y in range(height))
-    open(path, 'wb').write(b'\x89PNG\r\n\x1a\n' + part(b'IHDR', struct.pack('>IIBBBBB', width, height, 8, 6, 0, 0, 0))
-                           + part(b'IDAT', zlib.compress(rows)) + part(b'IEND', b''))
-
-
-def glb(path):
-    data = open(path, 'rb').read()
-    size, = struct.unpack('<I', data[12:16])
-    return json.loads(data[20:20 + size]), data[28 + size:]
-
-
-def pixels(document, chunk, image):  # of PNG files with any filters
-    view = document['bufferViews'][document['images'][image]['bufferView']]
-    data = chunk[view.get('byteOffset', 0):][:view['byteLength']]
-    width, height, bits, colour = struct.unpack('>IIBB', data[16:26])
-    n = {0: 1, 2: 3, 6: 4}[colour]
-    packed, at = b'', 8
-    while at < len(data):
-        size, kind = struct.unpack('>I4s', data[at:at + 8])
-        packed += data[at + 8:at + 8 + size] if kind == b'IDAT' else b''
-        at += 12 + size
-    raw, last, rows = zlib.decompress(packed), [0] * (n * width), []
-    for y in range(height):
-        method, line = raw[y * (1 + n * width)], list(raw[y * (1 + n * width) + 1:(y + 1) * (1 + n * width)])
-        for x in range(n * width):
-            a, b, c = (line[x - n] if x >= n else 0), last[x], (last[x - n] if x >= n else 0)
-            p = a + b - c
-            paeth = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
-            line[x] = line[x] + (0, a, b, (a + b) // 2, paeth)[method] & 255
-        last, rows = line, rows + [[tuple(line[n * x:n * x + n]) for x in range(width)]]
-    return width, height, [p for row in rows for p in row]
-
-
-def floats(document, chunk, accessor):
-    item = document['accessors'][accessor]
-    view = document['bufferViews'][item['bufferView']]
-    n = {'SCALAR': 1, 'VEC2': 2, 'VEC3': 3}[item['type']]
-    start, stride = view.get('byteOffset', 0) + item.get('byteOffset', 0), view.get('byteStride', 4 * n)
-    return [struct.unpack_from(f'<{n}f', chunk, start + stride * i) for i in range(item['count'])]
-EOT
+export PYTHONPATH="$source/tests" PYTHONDONTWRITEBYTECODE=1
 
 # A floor with a colour, a wall with a texture in a folder, a card with a texture and a mask, a vertex that nothing uses.
 mkdir 'kept tex' kept_out
@@ -95,15 +50,14 @@ o card
 usemtl card
 f 8/1 9/2 10/3 11/4
 EOT
-PYTHONPATH=.. python3 - <<'EOT'
-from files import png
+python3 - <<'EOT'
+from gltf_files import png
 png('kept tex/brick 1.png', 4, 4, [c for i in range(16) for c in (16 * i, 255 - i, 7, 255)])
 png('kept tex/mask.png', 2, 2, [c for i in range(4) for c in (0, 0, 0, 255 if i < 2 else 0)])
 EOT
 works '^file: ' bake kept_room.obj --radius 1 --rays 32 -o kept_out/room.glb -o values.csv -o values.npy
-checks=$((checks + 1))
-PYTHONPATH=.. python3 - <<'EOT' >../log 2>&1 || problem "kept_room.obj: $(cat ../log)"
-from files import *
+python3 - <<'EOT' >../log 2>&1 || problem "kept_room.obj: $(cat ../log)"
+from gltf_files import *
 document, chunk = glb('kept_out/room.glb')
 red, wall, card = document['materials']
 assert [round(x, 4) for x in red['pbrMetallicRoughness']['baseColorFactor']] == [0.8, 0.1, 0.05, 1], red
@@ -133,17 +87,14 @@ EOT
 there values.csv values.npy
 works '' bake kept_room.obj --radius 1 --rays 4 --unwrap --texture 64 -o kept_out/unwrapped.glb
 works '' level kept_room.obj -o kept_level.glb
-checks=$((checks + 1))
 grep -aq '"uri"' kept_level.glb && problem "kept_level.glb: found another file's name"
 sed 's/brick 1.png/none.png/' kept_room.mtl >kept_none.mtl
 sed 's/kept_room.mtl/kept_none.mtl/; /^o card/,$d' kept_room.obj >kept_none.obj
 works '' bake kept_none.obj --radius 1 --rays 4 -o kept_none.glb --json s.json
-checks=$((checks + 1))
 grep -q missing-file s.json && ! grep -aq '"uri"' kept_none.glb || problem "kept_none.obj: found a texture that does not exist in the output"
 cp 'kept tex/brick 1.png' kept_brick.tga
 sed 's/kept tex.brick 1.png/kept_brick.tga/' kept_room.mtl >kept_none.mtl
 "$nook" bake kept_none.obj --radius 1 --rays 4 -o kept_none.glb >../stdout 2>../log
-checks=$((checks + 1))
 grep -q 'warning: kept_brick.tga: found a picture that few' ../log || problem "kept_brick.tga: found no warning: $(cat ../log)"
 
 # Colours of vertices: sRGB in the file, linear in the output; multiplied by --to color.
@@ -172,9 +123,8 @@ sed -e 's/^end_header//' -e '/^[^0-9]/d' -e '/^3 /d' kept_scan.ply |
 	awk 'NF == 6 { print "v", $1, $2, $3, $4 / 255, $5 / 255, $6 / 255 } END { print "f 2 4 3\nf 2 5 4" }' >kept_scan.obj
 for scan in kept_scan.ply kept_scan.obj; do
 	works '' bake $scan --radius 1 --rays 4 -o scan.glb -o scan.json --json s.json
-	checks=$((checks + 1))
-	PYTHONPATH=.. python3 - <<'EOT' >../log 2>&1 || problem "$scan: $(cat ../log)"
-from files import *
+	python3 - <<'EOT' >../log 2>&1 || problem "$scan: $(cat ../log)"
+from gltf_files import *
 document, chunk = glb('scan.glb')
 attributes = document['meshes'][0]['primitives'][0]['attributes']
 colours = dict(zip(floats(document, chunk, attributes['POSITION']), floats(document, chunk, attributes['COLOR_0'])))
@@ -188,9 +138,9 @@ done
 there s.json scan.glb scan.json
 
 # A floor and a wall with coordinates of their own, and a metallic-roughness texture that has something else in red.
-PYTHONPATH=.. python3 - <<'EOT'
+python3 - <<'EOT'
 import base64
-from files import *
+from gltf_files import *
 quads = [[(0, 0, 0), (0, 0, 1), (1, 0, 1), (1, 0, 0)], [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]]
 uvs = [[(u + x * 0.4, 0.1 + y * 0.8) for x, y in ((0, 0), (0, 1), (1, 1), (1, 0))] for u in (0.05, 0.55)]
 data = b''.join(struct.pack('<3f', *p) for q in quads for p in q) + b''.join(struct.pack('<2f', *p) for q in uvs for p in q)
@@ -229,9 +179,8 @@ works '' bake kept_orm.gltf --radius 1 --rays 64 --texture 32 -o plain.glb --jso
 works '' bake kept_jpeg.gltf --radius 1 --rays 64 --to texture:orm --texture 32 -o jpeg.glb --json s.json
 works '' bake orm.glb --radius 1 --rays 64 --texture 32 -o again.glb --json s.json
 works '' bake kept_orm.gltf --radius 1 --rays 64 --to texture:orm --unwrap --texture 64 -o unwrapped.glb --json s.json
-checks=$((checks + 1))
-PYTHONPATH=.. python3 - <<'EOT' >../log 2>&1 || problem "--to texture:orm: $(cat ../log)"
-from files import *
+python3 - <<'EOT' >../log 2>&1 || problem "--to texture:orm: $(cat ../log)"
+from gltf_files import *
 def maps(path):
     document, chunk = glb(path)
     steel, plain = document['materials']
@@ -261,7 +210,7 @@ rough = steel['pbrMetallicRoughness']['metallicRoughnessTexture']
 assert steel['occlusionTexture'] == {'index': rough['index'], 'texCoord': 1, 'strength': 0.25}, steel
 EOT
 there again.glb jpeg.glb orm.glb plain.glb s.json unwrapped.glb
-PYTHONPATH=.. python3 - <<'EOT'
+python3 - <<'EOT'
 import zlib, struct
 part = lambda kind, data: struct.pack('>I', len(data)) + kind + data + struct.pack('>I', zlib.crc32(kind + data))
 rows = b''.join(b'\0' + b'\1\x80' * 12 for y in range(4))
@@ -276,14 +225,13 @@ fails 1 '--to: found' bake kept_orm.gltf --radius 1 --to texture:red -o o.glb
 : >kept_set.log >kept_deep.log
 fails 3 'kept_orm.gltf: TEXCOORD_0: found it in use' bake kept_orm.gltf --radius 1 --to texcoord:0 -o o.glb --progress kept_set.log
 fails 5 'kept_deep.gltf: textures\[0\]: found more than 8 bits' bake kept_deep.gltf --radius 1 --to texture:orm --texture 16 -o o.glb --progress kept_deep.log
-checks=$((checks + 1))
 grep -q '"places"' kept_set.log && ! grep -q '"rays"' kept_set.log kept_deep.log || problem "found rays in $(cat kept_set.log kept_deep.log)"
 
 # --max-error in the file itself: all attributes are interpolated. A wall stands on a floor, whose strip two nodes show, one of
 # them far away in a mirror; every attribute is a linear function of the position.
-PYTHONPATH=.. python3 - <<'EOT'
+python3 - <<'EOT'
 import base64
-from files import *
+from gltf_files import *
 data, views, accessors = b'', [], []
 def add(kind, component, packing, rows, **more):
     global data
@@ -321,11 +269,10 @@ works '' bake kept_split.gltf --radius 1 --rays 64 --max-error 0.005 --receivers
 works '' bake split.glb --radius 1 --rays 64 -o again.glb --json s.json
 works '' bake kept_split.gltf --radius 1 --rays 64 -o plain.glb --json s.json
 works '' bake kept_shell.obj --radius 1 --rays 64 --max-error 0.005 --receivers thing -o thing.glb --json s.json
-checks=$((checks + 1))
 sed 's/bake kept_split.gltf/bake split.glb/' split.glb | cmp -s - split.glb && problem "split.glb: found another command in its record"
 LC_ALL=C sed 's/bake kept_split.gltf .* -o//' split.glb >a && LC_ALL=C sed 's/bake kept_split.gltf .* -o//' other.glb | cmp - a >../log || problem "--max-error: $(cat ../log)"
-PYTHONPATH=.. python3 - <<'EOT' >../log 2>&1 || problem "--max-error in the file: $(cat ../log)"
-from files import *
+python3 - <<'EOT' >../log 2>&1 || problem "--max-error in the file: $(cat ../log)"
+from gltf_files import *
 def values(document, chunk, accessor):
     item = document['accessors'][accessor]
     view = document['bufferViews'][item['bufferView']]
@@ -381,7 +328,6 @@ fails 5 'kept_placed.gltf: nodes.0.: found instances by EXT_mesh_gpu_instancing'
 works '^triangles: 2$|triangles: 2,|"triangles": 2' bake kept_orm.gltf --radius 1 --rays 4 --ignore extras:physics=only --json -
 fails 1 "--ignore: found 'extras:none', expected parts of kept_orm.gltf: 'extras:physics=only'" bake kept_orm.gltf --radius 1 --ignore extras:none -o o.glb
 works "skies.*mesh 'shell' around all others, which --ignore '/shell' leaves out" info kept_shell.obj
-checks=$((checks + 1))
 "$nook" info kept_room.obj | grep -q skies && problem "kept_room.obj: found a sky"
 there
 finish

@@ -95,7 +95,6 @@ if [ "$(id -u)" -ne 0 ]; then
 	fails 2 'closed/a.json: cannot be written: Permission denied' $disk -o closed/a.json
 	chmod 755 closed
 fi
-checks=$((checks + 1))
 "$nook" $disk -o a.json --json - >/dev/full 2>../stderr
 [ $? -eq 2 ] || problem "--json - to a full device: expected exit code 2"
 there
@@ -165,7 +164,6 @@ works '' tile --pattern kept.json --size 2 --filter none --frames 4 --moves --st
 grep -q '_moves' a.h || problem "--moves: expected an array of moves in a.h"
 works 'that move in 4 frames' info kept_moves.json
 there a.h
-checks=$((checks + 1))
 "$nook" tile --pattern kept.json --size 2 --filter file:kept_cross.json --starts 1 -o a.json 2>../stderr
 grep -qx 'nook: warning: kept_cross.json: taps: found the sum 8, divided by it' ../stderr || problem "a kernel of sum 8: found '$(cat ../stderr)'"
 there a.json
@@ -308,13 +306,11 @@ works '^image: ' info d.png
 there d.json d.png
 works '"name": "R"' info kept_tile.exr --json -
 fails 1 '--domain' info kept_tile.exr --domain ball
-checks=$((checks + 1))
 "$nook" $compare --max-error 0.01 --diff d.png >../stdout 2>../stderr
 [ $? -eq 7 ] || problem "compare --max-error: expected exit code 7"
 grep -q '^nook: kept_a.png: rmse: found 0\.[0-9]*, expected at most 0.01$' ../stderr || problem "compare: found '$(cat ../stderr)'"
 there d.png
 for metric in mae p95 max ssim flip eq14; do
-	checks=$((checks + 1))
 	"$nook" $compare --max-error 0.0001 --metric $metric >../stdout 2>../stderr
 	[ $? -eq 7 ] || problem "compare --metric $metric: expected exit code 7"
 	grep -q "kept_a.png: $metric: found" ../stderr || problem "compare --metric $metric: found '$(cat ../stderr)'"

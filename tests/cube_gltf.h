@@ -3,9 +3,7 @@
 #pragma once
 
 #include "level_files.h"
-#include "temporary_folder.h"
 #include "testing.h"
-
 
 namespace nook
 {

@@ -4,15 +4,13 @@
 
 #include "testing.h"
 
-#include "core/file.h"
-#include "core/random.h"
 #include "core/round.h"
 #include "format/pattern_file.h"
 
 namespace nook::test
 {
 
-inline constexpr Domain kDomains[] = {Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere};
+inline constexpr std::array kDomains{Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere};
 
 inline Pattern scatteredPattern(Domain domain, int count, uint64_t seed = 7)
 {

@@ -19,7 +19,6 @@ for kind in ball hemisphere; do
 	"$nook" tile --pattern $kind.json --size 4 --kind random -o ${kind}_tile.json
 done
 for block in "mixed nook_block" "floats nook_float_block"; do
-	checks=$((checks + 1))
 	"$nook" emit --methods vo-line,vo-point,vo-area,alchemy,statvo,slices --patterns tile.json,ball_tile.json,tile.json,hemisphere_tile.json \
 		--block ${block% *} --filter bilateral --glsl es300 -o m.glsl -o m.h -o m.js -o m.py -o m.cs -o m.json || problem "$block: not emitted"
 	node "$here/emit_script_table.mjs" cpp ${block#* } >table.cpp
@@ -58,7 +57,6 @@ cmp -s of_header of_script && problem "another default: found the header's bytes
 # throws PATTERN PROJECTION SETTINGS
 throws()
 {
-	checks=$((checks + 1))
 	printf 'import { fill } from "./m.js";\ntry { fill(%s, %s); } catch (error) { console.log(`${error.name}: ${error.message}`); }\n' "$2" "$3" >throws.mjs
 	node throws.mjs >said 2>&1
 	grep -q -e "$1" said || problem "fill($2, $3): found '$(head -n 3 said)', expected '$1'"
@@ -78,7 +76,6 @@ throws '^RangeError: settings: x, y: expected -16777216 to 16777216' '[1,0,0,0, 
 
 # Modules of device depth preset it: in their own settings, and in JavaScript also in the defaults.
 for target in "es300 false" "vulkan true"; do
-	checks=$((checks + 1))
 	"$nook" emit --methods vo-line --patterns tile.json --depth device --glsl ${target% *} -o m.glsl -o m.h -o m.js || problem "$target: not emitted"
 	printf '#include "m.h"\n#include <cstdio>\nint main()\n{\n\tconst double p[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1.002, -1, 0, 0, -0.2, 0};\n\tnook_settings s = nook_vo_line_settings(1.5);\n\ts.width = s.height = 9;\n\tnook_block b{};\n\tif (nook_fill(b, p, s))\n\t\treturn 1;\n\tstd::printf("%%d %%.9g %%.9g %%.9g %%.9g\\n", s.zero_to_one, b.depth[0], b.depth[1], b.depth[2], b.depth[3]);\n}\n' >device.cpp
 	c++ -std=c++17 -o device device.cpp && ./device >of_header || problem "$target: no block"
@@ -95,12 +92,10 @@ done
 cp tile.json '`${x} y`.json'
 cp tile.json "$(printf 'a\342\200\250process.exit(3).json')"
 for name in '`${x} y`.json' "$(printf 'a\342\200\250process.exit(3).json')"; do
-	checks=$((checks + 1))
 	"$nook" emit --methods vo-line --patterns "$name" --glsl 330 -o m.glsl -o m.js || problem "$name: not emitted"
 	node glsl.mjs && cmp -s m.glsl said.glsl || [ "$name" != '`${x} y`.json' ] || problem "$name: found other GLSL in the module"
 	node -e 'import("./m.js").then(module => { if (!module.fill) process.exit(1); })' || problem "$name: found no module"
 done
-checks=$((checks + 1))
 "$nook" emit --methods vo-line --patterns tile.json -o m.js || problem "a module alone: not emitted"
 grep -q 'export const glsl' m.js && problem "a module without --glsl: found GLSL, expected none"
 finish

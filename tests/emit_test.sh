@@ -54,7 +54,6 @@ grep -q '^// Made by: nook emit .* --depth device --glsl vulkan$' m.h || problem
 works '' emit --methods vo-line --patterns kept_tile.json --depth device --recipe paper --glsl 330 -o m.glsl -o kept_paper.h
 grep -q 'settings.radius = reach;' kept_paper.h && grep -q 'settings.zero_to_one = false;' kept_paper.h || problem "--recipe paper: found no presets"
 if command -v c++ >../log; then
-	checks=$((checks + 1))
 	printf '#include "m.h"\n#include "kept_paper.h"\nint main() {}\n' >kept_both.cpp
 	c++ -std=c++17 -fsyntax-only kept_both.cpp >../log 2>&1 && problem "two headers of other depths: compiled"
 	grep -q 'reads depth in another way' ../log || problem "two headers of other depths: $(head -n 3 ../log)"
@@ -159,7 +158,6 @@ for target in "330 core" "430 core" "300 es" "450 vulkan"; do
 		grep -q "^// Made by: nook emit --methods $method --glsl $target$" m.glsl || problem "no command in $(head -1 m.glsl)"
 		for stage in "VERTEX vert" "VERTEX_PRISMS vert" "VERTEX_CHOOSE_FACES vert" "VERTEX_ANY_DEPTH vert" "FRAGMENT frag" "RESOLVE frag" "SPARSE frag"; do
 			set -- $stage
-			checks=$((checks + 1))
 			{
 				printf '#version %s\n#define NOOK_%s\n' "$version" "${1%%_*}"
 				[ "$1" = "${1%%_*}" ] || echo "#define NOOK_${1#*_}"
@@ -180,6 +178,10 @@ fails 1 '--directions: found with another method, expected aov-mask' emit --meth
 fails 1 '--directions: found .?48' emit --methods aov-mask --directions 48 --glsl 330 -o m.glsl
 fails 1 '--directions: found with another method' emit --methods statvo --directions 64 --glsl 330 -o m.glsl
 fails 1 'aov-mask: found --wgsl, which has no logic operations' emit --methods aov-mask --wgsl -o m.wgsl
+fails 1 'm.glsl: found with --wgsl, expected -o FILE.wgsl' emit --methods slices --wgsl -o m.glsl
+fails 1 '--wgsl: missing, expected one for the .wgsl file' emit --methods slices -o m.wgsl
+fails 1 '--glsl: found with --wgsl, expected one language' emit --methods slices --wgsl --glsl 330 -o m.wgsl
+fails 1 '--wgsl: found with --hlsl, expected one language' emit --methods slices --wgsl --hlsl 60 -o m.wgsl
 fails 1 'm.glsl: found with --hlsl, expected -o FILE.hlsl' emit --methods aov --hlsl 60 -o m.glsl
 fails 1 'm.h: found no shader' emit --methods aov --glsl 330 -o m.h
 fails 1 '--methods:.*or aov or aov-mask alone' emit --methods aov,statvo --glsl 330 -o m.glsl

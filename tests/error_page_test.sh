@@ -30,7 +30,6 @@ small="--grid quick --size 32x18 --rays 32 --repetitions 1 --shifts 2 --device c
 # exits CODE PATTERN COMMAND…: that exit code and a line on stderr with the pattern
 exits()
 {
-	checks=$((checks + 1))
 	code=$1
 	pattern=$2
 	shift 2
@@ -42,7 +41,6 @@ exits()
 
 exits 0 '^nook: [1-9][0-9]* results made, [0-9]* from the cache$' "$nook" report error corner.obj $small -o page.html --json report.json
 exits 0 '' "$nook" report error corner.obj $small -o again.html --json again.json --baseline report.json
-checks=$((checks + 1))
 cmp -s report.json again.json || problem "the cache: found another report, expected the same bytes"
 sed 's/"eq14": [0-9.e-]*/"eq14": 0.0001/' report.json >better.json
 exits 7 'errors that have grown' "$nook" report error corner.obj $small -o again.html --baseline better.json
@@ -50,7 +48,6 @@ sed 's/"camera": "/"camera": "another /' report.json >elsewhere.json
 exits 3 'found nothing in elsewhere.json' "$nook" report error corner.obj $small -o again.html --baseline elsewhere.json
 exits 1 "methods: found 'sums', expected some of" "$nook" report error corner.obj --methods statvo,sums
 exits 0 '' "$nook" report error corner.obj $small --methods statvo,rays --json some.json
-checks=$((checks + 1))
 grep -q '"command": "nook report error corner.obj .*--methods statvo,rays' some.json && ! grep -q '"method": "alchemy"' some.json ||
 	problem "report error --methods: found $(head -c 400 some.json), expected statvo and rays alone"
 exits 1 'shifts: found .1., expected 0' "$nook" report error corner.obj --shifts 1
@@ -58,9 +55,7 @@ exits 4 '1 of 2 levels that failed' "$nook" report error none.obj corner.obj $sm
 exits 4 '1 of 2 levels that failed.*errors that have grown' "$nook" report error none.obj corner.obj $small -o again.html --baseline better.json
 cp corner.obj kept.obj
 exits 1 'corner.obj: named twice' "$nook" report error corner.obj $small --json corner.obj
-checks=$((checks + 1))
 cmp -s corner.obj kept.obj || problem "corner.obj: found other bytes, expected a level that no output replaces"
-checks=$((checks + 1))
 [ -s failed.html ] || problem "a level that fails: found no page, expected one of the others"
 exits 2 'cannot be written' "$nook" report error corner.obj $small -o none/page.html
 echo '{"schema": "other"}' >wrong.json
@@ -74,22 +69,18 @@ exits 0 '' "$nook" report error --join report.json other.json -o joined.html
 if command -v python3 >/dev/null; then
 	exits 0 '' python3 "$claims" report.json
 	for text in 'lines beat points' 'five lines' 'every screen-space method' 'hundreds of rays'; do
-		checks=$((checks + 1))
 		grep -q "$text" out || problem "claims.py: found no '$text'"
 	done
 	exits 1 "schema: found other" python3 "$claims" wrong.json
 	sed 's/"low_ms": [0-9.e-]*/"low_ms": 1e-9/' report.json >instant.json # no times to interpolate between
 	exits 0 '' python3 "$claims" instant.json
-	checks=$((checks + 1))
 	grep -q 'no count of points takes as long' out || problem "claims.py: found '$(cat out)', expected no equal times"
 fi
 
 # A disk that is full, as a limit to the size of files: one line, and nothing half written.
 exits 2 'cannot be written' sh -c 'trap "" XFSZ; ulimit -f 4; exec "$@"' sh "$nook" report error corner.obj --grid quick --size 32x18 --rays 32 \
 	--device cpu --cache fresh -o limited.html
-checks=$((checks + 1))
 [ "$(wc -l <err)" = 1 ] || problem "a full disk: found '$(cat err)', expected one line"
-checks=$((checks + 1))
 [ ! -e limited.html ] && [ -z "$(find fresh -name '*.tmp*' 2>/dev/null)" ] || problem "a full disk: found $(find fresh limited.html), expected nothing half written"
 
 if [ -z "$browser" ]; then
@@ -102,7 +93,6 @@ points=$(($(grep -c '"origin": ' report.json) - $(grep -A3 '"time": {' report.js
 sized=$(grep -c '"bytes": [1-9]' report.json)
 fronts=$(grep -cE '"front(_bytes)?": true' report.json)
 for name in points sized fronts; do
-	checks=$((checks + 1))
 	eval "[ \"\${$name:-0}\" -gt 0 ]" || problem "the figures: no $name to expect"
 done
 

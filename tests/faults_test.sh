@@ -23,7 +23,6 @@ isWhole()
 {
 	what=$1
 	shift
-	checks=$((checks + 1))
 	found=
 	for file in a.*; do
 		case $file in *.tmp*) ;; *) [ ! -e "$file" ] || found="$found$file " ;; esac
@@ -119,7 +118,6 @@ bears()
 	what=$1
 	codes=$2
 	shift 2
-	checks=$((checks + 1))
 	"$@" >../stdout 2>../stderr </dev/null
 	found=$?
 	case " $codes " in *" $found "*) ;; *) problem "$what: $*: exit code $found, expected one of $codes: $(cat ../stderr)" ;; esac
@@ -251,7 +249,6 @@ done
 works '' level kept.obj -o kept_one.glb
 works '' level builtin:cornell -o kept_two.glb
 for run in $(seq $((4 * runs))); do
-	checks=$((checks + 1))
 	"$nook" level kept.obj -o a.glb >../stdout 2>../stderr &
 	first=$!
 	"$nook" level builtin:cornell -o a.glb >../stdout.two 2>../stderr.two || problem "two on one output: $(cat ../stderr.two)"
@@ -290,7 +287,6 @@ for run in $(seq $((runs > 3 ? 40 : 2))); do
 		5) echo 'nook.value/1 00000000000000000000000000000000' >"$file" ;;
 		esac
 	done
-	checks=$((checks + 1))
 	# shellcheck disable=SC2086
 	"$nook" $error --json a.json >../stdout 2>../stderr </dev/null || problem "a cache that is damaged: exit code $?: $(cat ../stderr)"
 	grep -q '^nook: cache: kept_cache/' ../stderr || problem "a cache that is damaged: found '$(cat ../stderr)', expected a line about it"

@@ -104,7 +104,6 @@ rm -f c.glb
 # A depfile lists the files read, without duplicates, and no built-in names.
 lists()
 {
-	checks=$((checks + 1))
 	file=$1
 	shift
 	found=$(sed -n 's/^  \([^ ]*\).*/\1/p' "$file" | tr '\n' ' ')

@@ -13,7 +13,6 @@ canHide || { echo "skipped: found no right to mount, expected root and unshare";
 # refuses LIBRARY ARGUMENTS...: the error names the library.
 refuses()
 {
-	checks=$((checks + 1))
 	library=$1
 	shift
 	without "$library" "$nook" "$@" >../stdout 2>../stderr </dev/null
@@ -30,7 +29,6 @@ for library in libEGL.so.1 "libOpenGL.so.0 libGL.so.1"; do
 	refuses "$library" tune builtin:cornell --budget 20ms $small -o picked
 done
 # The CPU needs none of it.
-checks=$((checks + 1))
 without libEGL.so.1 "$nook" shade kept_g.exr --method vo-line -o v.exr 2>../stderr || problem "without libEGL.so.1 on the CPU: $(cat ../stderr)"
 there v.exr
 finish

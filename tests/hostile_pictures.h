@@ -112,18 +112,25 @@ inline void appendPngChunk(std::string& png, std::string_view type, std::string_
 	appendBigEndian(png, crc32Of(body));
 }
 
-// A complete PNG of black pixels with one bit each: 1600 pixels per byte of the file.
-inline std::string blackPng(uint32_t width_px, uint32_t height_px)
+// A PNG of zeros with `channels` values of `bits` bits per pixel.
+inline std::string zerosPng(uint32_t width_px, uint32_t height_px, char bits, char colour_type, uint32_t channels)
 {
 	std::string head;
 	appendBigEndian(head, width_px);
 	appendBigEndian(head, height_px);
-	head += std::string("\x01\x00\x00\x00\x00", 5); // a bit, grey
+	head += {bits, colour_type, 0, 0, 0};
 	std::string png = "\x89PNG\r\n\x1A\n";
 	appendPngChunk(png, "IHDR", head);
-	appendPngChunk(png, "IDAT", zlibZeros(uint64_t{height_px} * (1 + (uint64_t{width_px} + 7) / 8)));
+	const uint64_t row_bits = uint64_t{width_px} * channels * static_cast<uint64_t>(bits);
+	appendPngChunk(png, "IDAT", zlibZeros(uint64_t{height_px} * (1 + (row_bits + 7) / 8)));
 	appendPngChunk(png, "IEND", "");
 	return png;
+}
+
+// Black pixels with one bit each: 1600 pixels per byte of the file.
+inline std::string blackPng(uint32_t width_px, uint32_t height_px)
+{
+	return zerosPng(width_px, height_px, 1, 0, 1);
 }
 
 // A complete OpenEXR of one pixel at 1 m with that many text attributes.

@@ -56,7 +56,6 @@ interrupted()
 {
 	signal=$1
 	shift
-	checks=$((checks + 1))
 	before=$(find . | sort)
 	# A shell starts background processes with SIGINT ignored.
 	env --default-signal=INT "$nook" "$@" --json kept_pipe >../stdout 2>../stderr </dev/null &
@@ -88,7 +87,6 @@ done
 
 # At any time while pictures are made, read and written: all of the outputs, or none.
 for moment in 0 0.05 0.1 0.2 0.4 0.8 1.6; do
-	checks=$((checks + 1))
 	"$nook" reference builtin:suburb --gbuffer kept_g.exr --radius 1 --rays 4 -o a.exr -o b.exr -o c.png >../stdout 2>../stderr &
 	process=$!
 	sleep $moment
@@ -100,7 +98,6 @@ for moment in 0 0.05 0.1 0.2 0.4 0.8 1.6; do
 done
 
 # A signal that the parent set to be ignored.
-checks=$((checks + 1))
 (
 	trap '' HUP
 	exec "$nook" pattern --domain disk --count 3 --method vogel -o a.json --json kept_pipe
@@ -129,7 +126,6 @@ exec 5>kept_pipe
 kill $reader
 wait $reader 2>/dev/null
 for arguments in "pattern --domain disk --count 3 --method vogel --json -" "info kept_g.exr" "--help"; do
-	checks=$((checks + 1))
 	# shellcheck disable=SC2086
 	"$nook" $arguments >&5 2>../stderr
 	found=$?

@@ -29,7 +29,6 @@ live()
 # refuses CODE PATTERN OPTIONS…: with all other requirements met.
 refuses()
 {
-	checks=$((checks + 1))
 	code=$1
 	pattern=$2
 	shift 2
@@ -55,12 +54,10 @@ refuses 1 "builtin: found 'none'" builtin:none --npm "$npm" --catalogue "$source
 refuses 2 'none.glb' none.glb --npm "$npm" --catalogue "$source/patterns"
 refuses 2 'modules: found no vite/package.json in empty' $small --npm "$npm" --catalogue "$source/patterns" --modules empty
 refuses 1 'docs: found with the page refused.html, expected a folder' $small --npm "$npm" --catalogue "$source/patterns" --docs other
-checks=$((checks + 1))
 live $small -o other 2>err
 [ $? = 2 ] && grep -q 'other: found other files in it, expected an empty folder' err && [ -e other/package.json ] || problem "another's folder: found '$(cat err)'"
 live $small -o page.html || { problem "the page: not made"; finish; }
 # A disk that is full, as a limit to the size of files: one line, and nothing half written.
-checks=$((checks + 1))
 (trap "" XFSZ; ulimit -f 4; live $small -o limited.html 2>err)
 [ $? = 2 ] && [ "$(wc -l <err)" = 1 ] && [ -z "$(ls | grep limited)" ] || problem "a full disk: found '$(cat err)' and $(ls | grep limited), expected one line"
 live $small -o again.html || problem "the page: not made again"
@@ -73,7 +70,6 @@ for time in first second; do
 done
 [ "$(ls below/site | tr '\n' ' ')" = 'data.js docs index.html site.css site.js ' ] || problem "the site: found $(ls below/site)"
 
-checks=$((checks + 1))
 grep -q 'three.js authors' below/site/site.js && grep -q 'meshoptimizer library' page.html || problem "the site: found no licences of three.js and meshoptimizer"
 
 # driven PAGE OPTIONS… <SCRIPT: writes the script's result to ./said.
@@ -81,7 +77,6 @@ driven()
 {
 	page=$1
 	shift
-	checks=$((checks + 1))
 	node "$here/page_driver.cjs" "$browser" "$page" "$@" >said 2>faults || problem "$page $*: $(head -n 5 faults)"
 }
 
@@ -105,7 +100,6 @@ pictured()
 {
 	picture=$1
 	shift
-	checks=$((checks + 1))
 	(cd made && "$nook" shade ../g.exr "$@" -o "$picture.exr") || problem "shade $*: not drawn"
 	case $* in *"--method slices"*) most=0.2 ;; *) most=0.1 ;; esac
 	idiff -fail 0.0039216 -failpercent "$most" "made/$picture.tif" "made/$picture.exr" >difference 2>&1
@@ -132,7 +126,6 @@ for width in 400 1400; do
 			return Object.entries(document.documentElement.dataset).map(([name, text]) => `${name}=${text}`).join(' ');
 		EOT
 		for word in "width=$width" "scheme=$scheme" overflow=false ready=yes settled=yes stageDrawn=1 'patternMade=nook pattern --domain disk --count 16'; do
-			checks=$((checks + 1))
 			grep -q -e "$word" said || problem "$width wide, $scheme: found $(cat said), expected $word"
 		done
 	done
@@ -141,7 +134,6 @@ done
 # says PATTERN WHAT
 says()
 {
-	checks=$((checks + 1))
 	grep -q -e "$1" said || problem "$2: found $(head -c 600 said), expected '$1'"
 }
 driven page.html <"$here/live_site_use.js"
@@ -165,7 +157,6 @@ says 'rays of another radius' 'the RMSE to rays of another radius'
 # Commands as printed by the page work.
 node -e 'JSON.parse(require("fs").readFileSync("said", "utf8")).commands.forEach((lines, i) => require("fs").writeFileSync(`commands${i}.sh`, lines))' || problem "the page: no commands"
 for script in commands*.sh; do
-	checks=$((checks + 1))
 	mkdir ran && (cd ran && PATH="$(dirname "$nook"):$PATH" sh -eu "../$script") >log 2>&1 || problem "$script: $(cat "$script" log)"
 	rm -rf ran
 done
@@ -178,7 +169,6 @@ for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
 	grep -q 'http://' "$folder/address" || sleep 0.5
 done
 address=$(grep -o -m 1 'http://[^)]*' "$folder/address")
-checks=$((checks + 1))
 node "$here/page_driver.cjs" "$browser" "${address}below/site/index.html" --wait 240 <"$here/live_site_level.js" >said 2>faults || problem "the level: $(grep -v 'does not belong to this context' faults | head -n 5)"
 node - said <<-'JS' >log 2>&1 || problem "the level: $(head -c 600 log)"
 	const said = JSON.parse(require('node:fs').readFileSync(process.argv[2], 'utf8')), wrong = [];
@@ -202,7 +192,6 @@ node - said <<-'JS' >log 2>&1 || problem "the level: $(head -c 600 log)"
 	expect('network', said.network.length === 0);
 	if (wrong.length > 0) throw new Error(wrong.join('; '));
 JS
-checks=$((checks + 1))
 echo "return document.querySelector('#links a[href=\"docs/index.html\"]').textContent" |
 	node "$here/page_driver.cjs" "$browser" "below/site/index.html" 2>faults | grep -q Documentation || problem "the site as files: $(head -n 5 faults)"
 kill $server

@@ -15,22 +15,16 @@ for tool in idiff oiiotool; do
 	command -v "$tool" >/dev/null || skip "found no $tool, expected Debian's package openimageio-tools"
 done
 npm_tools "$cache"
-checks=$((checks + 1))
 sh "$source/npm/ao/pack.sh" "$nook" "$folder/nook-ao" >"$folder/log" 2>&1 || problem "pack.sh: $(tail -n 5 "$folder/log")"
 linted "$folder/nook-ao" --profile esm-only
 application "$source/tests/npm_ao" "$folder/nook-ao"
-checks=$((checks + 1))
 [ "$(wc -c <"$tarball")" -le 40000 ] || problem "the package: found $(wc -c <"$tarball") bytes, expected at most 40000"
-checks=$((checks + 1))
 mkdir public && "$nook" bake builtin:cornell --radius 1 --rays 16 -o public/baked.glb >"$folder/log" || problem "nook bake: failed"
 "$nook" volumes builtin:cornell --distance 0.4 -o public/volumes.glb >"$folder/log" || problem "nook volumes: failed"
 "$nook" volumes builtin:cornell --distance 0.4 --compress -o public/packed.glb >"$folder/log" || problem "nook volumes: failed"
-checks=$((checks + 1))
 node packed.mjs public "$nook" >"$folder/log" 2>&1 || problem "packed volumes: $(tail -n 5 "$folder/log")"
-checks=$((checks + 1))
 "$tools/vite" build --outDir "$folder/vite" --logLevel error >"$folder/log" 2>&1 || problem "vite build: $(tail -n 5 "$folder/log")"
 # A bundle holds only what it uses: of the passes nothing, with bakes alone.
-checks=$((checks + 1))
 for name in useBakedVisibility NookPass; do
 	echo "import { $name } from 'nook-ao'; globalThis.used = $name;" >"$name.mjs"
 	"$tools/esbuild" "$name.mjs" --bundle --minify --format=esm --external:three --external:'three/*' >"$folder/$name.js" 2>"$folder/log" || problem "esbuild: $(cat "$folder/log")"
@@ -39,7 +33,6 @@ done
 	problem "bundles: found $(wc -c "$folder"/[uN]*.js), expected that of useBakedVisibility to be a twentieth of the other's"
 page_said "the page" "$tools/vite" preview --outDir "$folder/vite" --port 0
 # After a lost context three.js deletes objects of the old one, which Chromium reports.
-checks=$((checks + 1))
 grep -v 'object does not belong to this context' "$folder/faults" >"$folder/log" && problem "the page: $(head -n 5 "$folder/log")"
 cd "$folder" || exit 1
 node - said <<-'JS' >log 2>&1 || problem "the page: $(head -c 600 log)"
@@ -94,9 +87,7 @@ cp said webgl_said
 	page_options='--option --enable-unsafe-webgpu --option --use-webgpu-adapter=swiftshader'
 	page_said "the page of WebGPU" "$tools/vite" preview --outDir "$folder/vite" --port 0
 )
-checks=$((checks + 1))
 grep -v -e CONTEXT_LOST_WEBGL -e 'Instance dropped in popErrorScope' -e 'external Instance reference no longer exists' faults >log && problem "the page of WebGPU: $(head -n 5 log)"
-checks=$((checks + 1))
 node - said <<-'JS' >log 2>&1 || problem "WebGPU: $(head -c 600 log)"
 	const { refused, texts, webgpu, shadowed, ...differences } = JSON.parse(require('node:fs').readFileSync(process.argv[2], 'utf8'));
 	const { deepStrictEqual } = require('node:assert');
@@ -134,7 +125,6 @@ oiiotool read/v0.tif --chnames Z -o depth.exr || problem "depth: not read"
 # pictured PICTURE SLICES STEPS PERCENT: at most PERCENT of the pixels differ by more than 1.5/255, since the page's normals have 8 bits.
 pictured()
 {
-	checks=$((checks + 1))
 	"$nook" tile --domain slice --count "$2" --size 4 --filter bilateral:5 --frames 16 --moves -o tile.json >/dev/null || problem "tile: not made"
 	"$nook" shade depth.exr --sky-depth 1e29 --projection "$projection" --world-to-camera identity --normals from-depth --method slices \
 		--pattern tile.json --slice-steps "$3" --filter bilateral --radius 1.5 -o shade.exr >log 2>&1 || problem "nook shade: $(cat log)"
@@ -144,12 +134,10 @@ pictured()
 # nook shade draws the same volumes, up to the page's normals of 8 bits and visibility of 8 bits.
 numbers=$(node -e 'console.log(JSON.parse(require("fs").readFileSync("said", "utf8")).room.map(matrix => matrix.join(" ")).join("\n"))')
 oiiotool read/v3.tif --chnames Z -o room.exr || problem "room: not read"
-checks=$((checks + 1))
 "$nook" shade room.exr --sky-depth 1e29 --projection "$(echo "$numbers" | head -n 1)" --world-to-camera "$(echo "$numbers" | tail -n 1)" --normals from-depth \
 	--method aov --volumes app/public/volumes.glb -o shade.exr >log 2>&1 || problem "nook shade: $(cat log)"
 idiff -fail 0.0079 -failpercent 0.5 read/v4.tif shade.exr >difference 2>&1
 [ $? -lt 2 ] || problem "volumes: $(grep -E 'Max|pixels' difference)"
-checks=$((checks + 1))
 [ "$(oiiotool --stats shade.exr | grep -c 'Stats Min: 0\.[0-7]')" = 1 ] || problem "volumes: found $(oiiotool --stats shade.exr | grep Min), expected dark pixels"
 pictured v1 1 4 0.5
 pictured v2 3 6 0.5

@@ -22,9 +22,7 @@ application "$source/tests/npm_app" "$npm"
 served()
 {
 	page_said "$@"
-	checks=$((checks + 1))
 	[ -s "$folder/faults" ] && problem "$name: $(head -n 5 "$folder/faults")"
-	checks=$((checks + 1))
 	node - "$source/patterns/disk" "$folder/said" >"$folder/log" 2>&1 <<-'JS' || problem "$name: $(grep -m 5 '^[+-]\|Error' "$folder/log")"
 		const { deepStrictEqual } = require('node:assert'), { readFileSync } = require('node:fs'), [folder, said] = process.argv.slice(2);
 		const catalogue = name => readFileSync(`${folder}/${name}`, 'utf8');
@@ -35,11 +33,9 @@ served()
 }
 
 served "Vite's server" "$tools/vite" --port 0
-checks=$((checks + 1))
 "$tools/vite" build --outDir "$folder/vite" --logLevel warn >"$folder/log" 2>&1 || problem "vite build: $(tail -n 5 "$folder/log")"
 served "Vite's build" "$tools/vite" preview --outDir "$folder/vite" --port 0
 # esbuild does not rewrite URLs: the worker is a separate entry point, nook.wasm is copied.
-checks=$((checks + 1))
 mkdir "$folder/esbuild" && cp index.html node_modules/nook-patterns/nook.wasm "$folder/esbuild"
 "$tools/esbuild" main.js nook_worker=nook-patterns/nook_worker.js --bundle --format=esm --outdir="$folder/esbuild" --log-level=warning >"$folder/log" 2>&1 ||
 	problem "esbuild: $(head -n 5 "$folder/log")"

@@ -2,10 +2,7 @@
 // Runs other programs from tests.
 #pragma once
 
-#include "temporary_folder.h"
 #include "testing.h"
-
-#include "core/file.h"
 
 namespace nook::test
 {

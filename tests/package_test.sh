@@ -14,7 +14,6 @@ refused()
 	what=$1
 	regex=$2
 	shift 2
-	checks=$((checks + 1))
 	"$@" >"$folder/log" 2>&1 && problem "$what: succeeded, expected a refusal"
 	tr -s ' \n' '  ' <"$folder/log" | grep -Eq "$regex" || problem "$what: expected '$regex', found: $(tail -n 20 "$folder/log")"
 }

@@ -13,7 +13,6 @@ run()
 	what=$1
 	code=$2
 	shift 2
-	checks=$((checks + 1))
 	"$@" >../stdout 2>../stderr </dev/null
 	found=$?
 	[ "$found" -eq "$code" ] || problem "$what: exit code $found, expected $code: $(tail -n 3 ../stderr)"
@@ -64,7 +63,6 @@ works '1 job, 1 done, 0 not done' plan --status kept_jobs
 works '"done": 1' plan --status kept_jobs --json -
 touch ../before
 run 'make again' 0 make -C kept_jobs
-checks=$((checks + 1))
 [ "$name" -nt ../before ] && problem 'make again: made it again'
 fails 1 "kept_jobs: found the plan of .*, expected that of .*, or a new folder" plan -o kept_jobs -- $reference -o b.exr
 rm "$name"
@@ -93,7 +91,6 @@ works '' reference builtin:cornell --gbuffer ../other/kept_g.exr --radius 1 --ra
 same kept_again.exr ../other/a.exr 'another input: other bytes than those of the single run'
 sed -i "s/^version=.*/version='0.0.1'/" ../other/kept_shares/job.sh
 run 'another version' 5 sh ../other/kept_shares/job.sh 9
-checks=$((checks + 1))
 grep -q 'expected nook 0.0.1, for which this was planned' ../stderr || problem "another version: $(cat ../stderr)"
 works '' plan --shares 8 -o kept_shares -- $reference -o a.exr
 run 'a job that is not there' 1 sh kept_shares/job.sh 10
@@ -101,7 +98,6 @@ run 'a job that is not there' 1 sh kept_shares/job.sh 10
 # A job that fails says why; its input is mended, and so is a file that the input names.
 works '' plan -o kept_fails -- volumes kept_bad.obj --distance 1 -o a.glb
 run 'a job that fails' 2 make -C kept_fails
-checks=$((checks + 1))
 grep -q '^job.sh: job: nook: kept_bad.obj: ' ../stderr || problem "a job that fails: $(cat ../stderr)"
 printf 'mtllib kept_a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >kept_bad.obj
 echo 'newmtl a' >kept_a.mtl
@@ -112,7 +108,6 @@ sleep 0.01
 echo 'newmtl b' >kept_a.mtl
 works '0 done' plan --status kept_fails
 run 'a material that changed' 0 make -C kept_fails
-checks=$((checks + 1))
 [ a.glb -nt ../before ] || problem 'a material that changed: nothing was made'
 there a.glb
 
@@ -145,7 +140,6 @@ touch ../before
 list builtin:suburb 8
 works '' plan kept_list.json -o kept_out
 run 'a list that changed' 0 make -C kept_out/plan -j 2
-checks=$((checks + 1))
 [ "$(made)" = 'kept_out/two.exr ' ] || problem "a list that changed: found '$(made)' made, expected kept_out/two.exr"
 list gone.glb 8
 fails 2 'kept_list.json: two.depth: ../gone.glb: cannot be read' plan kept_list.json -o kept_out

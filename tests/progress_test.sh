@@ -51,7 +51,6 @@ AWK
 # isLog FILE ENDS LEAST: checks a log, whether it has an end, and the minimum number of stages.
 isLog()
 {
-	checks=$((checks + 1))
 	awk -v ends="$2" -v least="$3" -f ../log.awk "$1" >../problems || problem "$1: $(head -n 3 ../problems) in $(head -c 1000 "$1")"
 }
 
@@ -72,7 +71,6 @@ while read -r arguments; do
 	cp -r a.* kept_patterns ../plain 2>/dev/null
 	mv ../stdout ../plain_stdout
 	rm -rf a.* kept_patterns
-	checks=$((checks + 1))
 	# shellcheck disable=SC2086
 	"$nook" $arguments --progress kept_log >../stdout 2>../stderr </dev/null || problem "nook $arguments --progress: $(cat ../stderr)"
 	isLog kept_log 1 $least
@@ -94,7 +92,6 @@ stages()
 	works '' "$@" --progress kept_log
 	isLog kept_log 1 1
 	for stage in $expected; do
-		checks=$((checks + 1))
 		grep -q "^{\"stage\": \"$stage\", .*\"done\": 1," kept_log || problem "nook $*: found no end of the stage '$stage' in $(cat kept_log)"
 	done
 	rm -f a.*
@@ -119,10 +116,8 @@ stages 'level tree depth' shade kept_g.exr --method slices --radius 0.5 --bake k
 printf 'v 0 0 0\nv 1 0 0\nf 1 2 2\n' >kept_bad.obj
 fails 3 'kept_bad.obj: ' volumes kept_bad.obj --distance 1 -o a.glb --progress kept_log
 isLog kept_log 1 1
-checks=$((checks + 1))
 sed -n 's/^{"end": true, "exit_code": 3, .*"error": "\(.*\)"}$/nook: \1/p' kept_log | cmp -s - ../stderr ||
 	problem "found '$(tail -n 1 kept_log)', expected the line '$(cat ../stderr)'"
-checks=$((checks + 1))
 "$nook" compare kept_r.exr kept_g.exr --channel Z --max-error 0 --progress kept_log >../stdout 2>../stderr
 [ $? -eq 3 ] && isLog kept_log 1 0
 
@@ -152,7 +147,6 @@ same kept_p.json ../kept_p.json 'kept_p.json: found other bytes after refusals'
 pattern='pattern --domain disk --count 5 --starts 40 -o a.json'
 # shellcheck disable=SC2086
 "$nook" $pattern && mv a.json ../plain.json
-checks=$((checks + 1))
 echo before >../stderr
 # shellcheck disable=SC2086
 "$nook" $pattern --progress /dev/stderr 2>>../stderr
@@ -164,7 +158,6 @@ goesOn()
 {
 	reason=$1
 	shift
-	checks=$((checks + 1))
 	[ "$(wc -l <../stderr)" -eq 1 ] && grep -q "^nook: warning: .*: cannot be written: $reason, the work goes on" ../stderr ||
 		problem "$*: found '$(cat ../stderr)', expected one line of warning"
 	same a.json ../plain.json "$*: other bytes"
@@ -187,7 +180,6 @@ goesOn 'No space left on device' 'a full disk'
 
 # Killed while working: complete lines, and no end.
 for signal in TERM KILL; do
-	checks=$((checks + 1))
 	: >kept_log
 	"$nook" bake builtin:courtyard --radius 1 --rays 16384 -o a.glb --progress kept_log >../stdout 2>../stderr &
 	process=$!
@@ -204,7 +196,6 @@ if ! script -qec true /dev/null >../typed 2>&1 </dev/null; then
 fi
 onTerminal()
 {
-	checks=$((checks + 1))
 	script -qec "'$nook' $*" /dev/null >../typed 2>&1 </dev/null || problem "nook $* on a terminal: $(cat ../typed)"
 }
 escape=$(printf '\033')
@@ -214,7 +205,6 @@ for rays in 64 256 1024 4096 16384; do
 done
 grep -Eq "[a-z]+ \[#+\.+\] [0-9]+ %, ([0-9]+ min )?[0-9]+ s left" ../typed || problem "a terminal: found '$(tail -c 300 ../typed)', expected a bar and the time left"
 # The final terminal contents, after the last time the line was cleared: nothing but the verb's own output.
-checks=$((checks + 1))
 tr '\r' '\n' <../typed | sed -n "/^$escape\[K/h; /^$escape\[K/!H; \${x; p}" | grep -q '%' && problem "a terminal: found '$(tail -c 300 ../typed)', expected the line to go"
 tr '\r' '\n' <../typed | grep -q "^$escape\[K" || problem "a terminal: found '$(tail -c 300 ../typed)', expected the line to be cleared"
 # Also cleared before an error; with JSON lines there is no progress line.

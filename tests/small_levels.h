@@ -4,7 +4,6 @@
 
 #include "testing.h"
 
-#include "core/math.h"
 #include "scene/level.h"
 
 namespace nook::test

@@ -4,6 +4,7 @@
 
 #include "emit_samples.h"
 #include "nook_vo9.h"
+#include "other_tools.h"
 #include "testing.h"
 
 #include "emit/module.h"
@@ -23,7 +24,7 @@ struct PassCase
 
 inline std::vector<PassCase> passCases()
 {
-	std::vector<PassCase> all(10);
+	std::vector<PassCase> all(11);
 	all[0].name = "vo-line, bilateral, half";
 	all[0].shade.filter = ShadeFilter::bilateral;
 	all[0].shade.half_resolution = true;
@@ -67,6 +68,10 @@ inline std::vector<PassCase> passCases()
 	all[9].shade.power = 1.6;
 	all[9].shade.filter = ShadeFilter::bilateral;
 	all[9].shade.half_resolution = true;
+	all[10].name = "vo-point, cut, one variant";
+	all[10].shade.method = ShadeMethod::vo_point;
+	all[10].shade.use_normal = false;
+	all[10].shade.cut = true;
 	for (PassCase& one : all)
 	{
 		one.shade.radius_m = 0.8;
@@ -82,10 +87,33 @@ inline ModuleSettings moduleOf(const PassCase& one, GlslTarget target)
 	ModuleMethod method{one.shade.method, {}};
 	if (takesPattern(one.shade.method))
 	{
-		method.variants = scatteredTile(domainOf(one.shade.method), 4, 6, false).variants;
+		method.variants = scatteredTile(domainOf(one.shade.method), one.shade.cut ? 1 : 4, 6, false).variants;
 	}
 	settings.methods = {method};
 	return settings;
+}
+
+inline ModuleSettings moduleOf(ShadeMethod method, ShadeFilter filter, GlslTarget target)
+{
+	PassCase one{"", {}};
+	one.shade.method = method;
+	one.shade.radius_m = 0.8;
+	one.shade.filter = filter;
+	return moduleOf(one, target);
+}
+
+// A whole shader of an OpenGL or Vulkan target compiles, and its SPIR-V is valid, where spirv-val is installed.
+inline void requireCompiles(const std::string& shader, GlslTarget target)
+{
+	const TemporaryFolder folder;
+	writeFile(folder / "m.frag", shader);
+	const bool vulkan = target == GlslTarget::vulkan;
+	const std::string spirv = vulkan ? "-V -o '" + folder / "m.spv" + "' " : std::string();
+	REQUIRE(passes("glslangValidator " + spirv + "'" + folder / "m.frag" + "'", folder));
+	if (vulkan && toolExists("spirv-val"))
+	{
+		REQUIRE(passes("spirv-val --target-env vulkan1.0 '" + folder / "m.spv" + "'", folder));
+	}
 }
 
 inline ShadeSamples samplesFor(const ModuleSettings& settings)

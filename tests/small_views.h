@@ -4,7 +4,6 @@
 
 #include "testing.h"
 
-#include "core/math.h"
 #include "scene/builtin.h"
 #include "scene/gbuffer.h"
 
@@ -42,6 +41,39 @@ inline Lens lensOf(double fov_deg)
 		lens.far_m = 100.0;
 	}
 	return lens;
+}
+
+// Each in turn of planes at any slope, through lenses of any field of view; 0 is a parallel view.
+inline GBuffer eachPlane(int width, int height)
+{
+	const double fov_deg = GENERATE(0.0, 30.0, 60.0, 100.0);
+	const double tilt_deg = GENERATE(0.0, 30.0, 60.0, 80.0);
+	UNSCOPED_INFO("field of view " << fov_deg << ", turned by " << tilt_deg);
+	return planeAt(projectionOf(lensOf(fov_deg), 16.0 / 9.0), width, height, tilt_deg);
+}
+
+inline void checkOpen(const std::vector<float>& visibility)
+{
+	CHECK(*std::min_element(visibility.begin(), visibility.end()) >= 1.0F - 1.0F / 255.0F);
+	CHECK(*std::max_element(visibility.begin(), visibility.end()) <= 1.0F);
+}
+
+// A floor across a parallel view 10 m below the camera, 6 m wide; `height(x)` of objects on it, in metres.
+template <class Height> GBuffer floorWith(int size, Height height)
+{
+	GBuffer gbuffer{size, size, {glm::dmat4(1.0), projectionOf(lensOf(0.0), 1.0)}, 0.0, {}, {}};
+	for (int i = 0; i < size * size; ++i)
+	{
+		gbuffer.depth.push_back(static_cast<float>(10.0 - height((i % size + 0.5) * 6.0 / size - 3.0)));
+		gbuffer.normals.emplace_back(0.0F, 0.0F, 1.0F);
+	}
+	return gbuffer;
+}
+
+// Its right half is that much higher.
+inline GBuffer stepOf(int size, double step_m)
+{
+	return floorWith(size, [=](double x) { return x > 0.0 ? step_m : 0.0; });
 }
 
 inline GBuffer builtinView(const std::string& name, int width, int height)

@@ -16,26 +16,47 @@
 namespace nook::test
 {
 
-// One polygon per triangle, rounded to 16 bits.
-inline VolumeSet volumesOf(const Level& level, double distance_m, std::size_t cluster, bool two_sided = false)
+using Corners = std::vector<glm::dvec3>;
+
+inline Corners cornersOf(const Level& level, std::size_t triangle)
 {
-	VolumeSet set;
-	set.distance_m = distance_m;
-	set.exact_bounds = true; // the reference supports no other
+	const glm::uvec3& at = level.triangles[triangle];
+	return {level.positions[at.x], level.positions[at.y], level.positions[at.z]};
+}
+
+// One polygon per triangle.
+inline Occluders trianglesOf(const Level& level, bool two_sided = false)
+{
+	Occluders occluders;
 	for (std::size_t t = 0; t < level.triangles.size(); ++t)
 	{
-		const auto first = static_cast<uint32_t>(set.occluders.corners.size());
-		std::vector<glm::dvec3> corners;
-		for (int i = 0; i < 3; ++i)
+		const bool both = two_sided || level.material_list[level.materials[t]].two_sided;
+		occluders.add({.triangle = static_cast<uint32_t>(t), .two_sided = both}, cornersOf(level, t));
+	}
+	return occluders;
+}
+
+inline VolumeSet setOf(const Occluders& occluders, double distance_m, bool exact_bounds = true)
+{
+	VolumeSet set;
+	set.occluders = occluders;
+	set.distance_m = distance_m;
+	set.exact_bounds = exact_bounds;
+	return set;
+}
+
+// One polygon per triangle with area, rounded to 16 bits.
+inline VolumeSet volumesOf(const Level& level, double distance_m, std::size_t cluster, bool two_sided = false)
+{
+	VolumeSet set = setOf({}, distance_m); // the reference supports no other bounds
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
+	{
+		const Corners corners = cornersOf(level, t);
+		if (glm::length(frontOf(corners)) >= 0.5)
 		{
-			corners.push_back(level.positions[level.triangles[t][static_cast<std::size_t>(i)]]);
+			set.occluders.add({.triangle = static_cast<uint32_t>(t), .alpha = t % 3 == 0 ? 0.5F : 1.0F, .two_sided = two_sided},
+							  corners);
 		}
-		if (glm::length(frontOf(corners)) < 0.5)
-		{
-			continue;
-		}
-		set.occluders.corners.insert(set.occluders.corners.end(), corners.begin(), corners.end());
-		set.occluders.polygons.push_back({first, 3, static_cast<uint32_t>(t), t % 3 == 0 ? 0.5F : 1.0F, two_sided});
 	}
 	clusterVolumes(set, {cluster}, {});
 	return unpacked(packVolumes(set, {}, {}), set);

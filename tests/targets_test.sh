@@ -70,7 +70,6 @@ fi
 
 # Bytes. A part of the catalogue, since emulation is slow: docs/guide/platforms.md covers all of it.
 while read -r domain counts; do
-	checks=$((checks + 1))
 	there catalogue --domain "$domain" --counts "$counts" -o "$source/patterns" --check || problem "$target: $domain $counts: other bytes"
 done <<-EOT
 	disk 3-4
@@ -103,7 +102,6 @@ mkdir "$folder/folder.json"
 printf '{' >"$folder/broken.json"
 cd "$folder" || exit 1
 while read -r options; do
-	checks=$((checks + 1))
 	"$nook" $options >/dev/null 2>"$folder/here.err"
 	expected=$?
 	there $options >/dev/null 2>"$folder/there.err"
@@ -130,7 +128,6 @@ refuses()
 {
 	component=$1
 	shift
-	checks=$((checks + 1))
 	there "$@" >"$folder/out" 2>"$folder/err"
 	code=$?
 	if [ $code -ne 5 ] || [ "$(wc -l <"$folder/err")" -ne 1 ] || ! grep -q "the component $component" "$folder/err"; then
@@ -159,7 +156,6 @@ same "$folder/out" "$source/patterns/disk/disk_005.json" "$target: standard outp
 # sized FILE NAME: docs/guide/platforms.md states its size to a tenth, since it changes slightly with each commit.
 sized()
 {
-	checks=$((checks + 1))
 	stated=$(sed -n "s/^| \`$2\`[^|]*| \([0-9.]*\) MB |.*/\1/p" "$source/docs/guide/platforms.md")
 	awk -v stated="${stated:-0}" -v bytes="$(wc -c <"$1")" 'BEGIN { exit !(bytes >= 0.9e6 * stated && bytes <= 1.1e6 * stated) }' ||
 		problem "docs/guide/platforms.md: $2: found '$stated' MB, expected about the $(wc -c <"$1") bytes of $1"
@@ -168,7 +164,6 @@ sized()
 # atMost BYTES FILE
 atMost()
 {
-	checks=$((checks + 1))
 	[ "$(wc -c <"$2")" -le "$1" ] || problem "$2: $(wc -c <"$2") bytes, expected $1 or fewer"
 }
 if [ "$target" = windows ]; then
@@ -192,13 +187,11 @@ if [ "$target" = wasm ]; then
 	echo '{"type": "module"}' >package.json
 	npm install --silent --offline --no-audit --no-fund "$folder"/nook-patterns-*.tgz >"$folder/log" 2>&1 || problem "npm: not installed: $(cat "$folder/log")"
 	cp -r "$source/npm/test" .
-	checks=$((checks + 1))
 	if ! NOOK_PATTERNS="$source/patterns" node --test test >"$folder/log" 2>&1; then
 		problem "npm: its tests"
 		grep -E -A12 '^not ok' "$folder/log"
 	fi
 	if command -v tsc >/dev/null; then
-		checks=$((checks + 1))
 		tsc --strict --noEmit --target es2022 --module nodenext --moduleResolution nodenext test/types.mts || problem "npm: its types"
 	else
 		echo "npm: its types are not checked: found no tsc, expected Debian's package node-typescript (scripts/setup.sh wasm)"

@@ -3,7 +3,6 @@
 #include "small_volumes.h"
 #include "testing.h"
 
-#include "core/random.h"
 #include "image/compare.h"
 #include "methods/aov_text.h"
 #include "methods/block.h"
@@ -14,19 +13,15 @@
 namespace
 {
 
-void add(VolumeSet& set, const std::vector<glm::dvec3>& corners, bool two_sided = false, float alpha = 1.0F)
+void add(VolumeSet& set, const Corners& corners, bool two_sided = false, float alpha = 1.0F)
 {
-	const auto first = static_cast<uint32_t>(set.occluders.corners.size());
-	set.occluders.corners.insert(set.occluders.corners.end(), corners.begin(), corners.end());
-	set.occluders.polygons.push_back({first, static_cast<uint32_t>(corners.size()), 0, alpha, two_sided});
+	set.occluders.add({.alpha = alpha, .two_sided = two_sided}, corners);
 }
 
 // The wall x = 0, which faces +x, with its foot at y = 0; in columns × rows of rectangles.
 VolumeSet wall(int columns, int rows, double half_width = 50.0, double height = 50.0)
 {
-	VolumeSet set;
-	set.distance_m = 1.0;
-	set.exact_bounds = true;
+	VolumeSet set = setOf({}, 1.0);
 	for (int c = 0; c < columns; ++c)
 	{
 		for (int r = 0; r < rows; ++r)
@@ -108,17 +103,6 @@ SmallView viewOfLevel(const std::string& name)
 	const Tracer tracer(view.level, {});
 	view.gbuffer = castGBuffer(tracer, viewOf(view.level.cameras.front(), 96, 54), 96, 54, NormalKind::geometric, {});
 	return view;
-}
-
-VolumeSet trianglesOf(const Level& level, double distance_m)
-{
-	VolumeSet set;
-	set.distance_m = distance_m;
-	for (const glm::uvec3& triangle : level.triangles)
-	{
-		add(set, {level.positions[triangle.x], level.positions[triangle.y], level.positions[triangle.z]});
-	}
-	return set;
 }
 
 // Evaluates nookSparse from one pixel of every cell; −1 where it leaves a pixel to be drawn.
@@ -275,7 +259,7 @@ TEST_CASE("aov: what the tree finds is what every volume says, on any number of 
 TEST_CASE("aov: the curve is applied to the sum, not to each volume", "[aov]")
 {
 	const SmallView view = viewOfLevel("cornell");
-	const VolumeSet set = trianglesOf(view.level, 0.6);
+	const VolumeSet set = setOf(trianglesOf(view.level), 0.6, false);
 	AovSettings settings{.compensate = false};
 	const std::vector<float> plain = aovOnCpu(view.gbuffer, set, settings, {4, {}}).shaded.visibility;
 	settings.compensate = true;
@@ -292,35 +276,31 @@ TEST_CASE("aov: the curve is applied to the sum, not to each volume", "[aov]")
 
 TEST_CASE("aov-mask: directions share the hemisphere evenly, and thresholds the unit interval", "[aov]")
 {
-	for (const int count : {32, 96, 128, 256})
+	const int count = GENERATE(32, 96, 128, 256);
+	const std::vector<glm::vec4> directions = maskDirections(count);
+	glm::dvec3 mean(0.0);
+	double threshold = 0.0;
+	for (const glm::vec4& d : directions)
 	{
-		const std::vector<glm::vec4> directions = maskDirections(count);
-		glm::dvec3 mean(0.0);
-		double threshold = 0.0;
-		for (const glm::vec4& d : directions)
-		{
-			CHECK(glm::length(glm::vec3(d)) == Approx(1.0F).margin(1e-6));
-			CHECK((d.z > 0.0F && d.w > 0.0F && d.w < 1.0F));
-			CHECK((&d == directions.data() || (&d)[-1].z > d.z));
-			mean += glm::dvec3(d) / static_cast<double>(count);
-			threshold += static_cast<double>(d.w) / count;
-		}
-		// Weighted by the cosine, the mean direction is 2/3 of the normal.
-		CHECK(glm::length(mean - glm::dvec3(0, 0, 2.0 / 3.0)) < 0.5 / std::sqrt(count));
-		CHECK(threshold == Approx(0.5).margin(1.0 / count + 0.02));
+		CHECK(glm::length(glm::vec3(d)) == Approx(1.0F).margin(1e-6));
+		CHECK((d.z > 0.0F && d.w > 0.0F && d.w < 1.0F));
+		CHECK((&d == directions.data() || (&d)[-1].z > d.z));
+		mean += glm::dvec3(d) / static_cast<double>(count);
+		threshold += static_cast<double>(d.w) / count;
 	}
+	// Weighted by the cosine, the mean direction is 2/3 of the normal.
+	CHECK(glm::length(mean - glm::dvec3(0, 0, 2.0 / 3.0)) < 0.5 / std::sqrt(count));
+	CHECK(threshold == Approx(0.5).margin(1.0 / count + 0.02));
 }
 
 TEST_CASE("aov-mask: the linear falloff beside a wall, as rays have it", "[aov]")
 {
 	const VolumeSet set = wall(1, 1);
 	const VolumeEvaluator evaluator(set, {}, true);
-	for (const double distance : {0.01, 0.1, 0.3, 0.5, 0.8})
-	{
-		const double expected = raysNextToWall(distance, 1.0);
-		CHECK(1.0 - evaluator.mask({distance, 0, 0}, {0, 1, 0}, 256).visibility == Approx(expected).margin(0.02));
-		CHECK(1.0 - evaluator.mask({distance, 0, 0}, {0, 1, 0}, 32).visibility == Approx(expected).margin(0.08));
-	}
+	const double distance = GENERATE(0.01, 0.1, 0.3, 0.5, 0.8);
+	const double expected = raysNextToWall(distance, 1.0);
+	CHECK(1.0 - evaluator.mask({distance, 0, 0}, {0, 1, 0}, 256).visibility == Approx(expected).margin(0.02));
+	CHECK(1.0 - evaluator.mask({distance, 0, 0}, {0, 1, 0}, 32).visibility == Approx(expected).margin(0.08));
 }
 
 TEST_CASE("aov-mask: polygons cover the directions that cross them, but for a few at their edges", "[aov]")
@@ -403,7 +383,7 @@ TEST_CASE("aov: close to rays, and masks at less than half of the plain sum's er
 	for (const std::string& name : {std::string("cornell"), std::string("courtyard")})
 	{
 		const SmallView view = viewOfLevel(name);
-		const VolumeSet set = trianglesOf(view.level, 0.6);
+		const VolumeSet set = setOf(trianglesOf(view.level), 0.6, false);
 		AovSettings settings{.compensate = false};
 		const std::vector<float> sum = aovOnCpu(view.gbuffer, set, settings, {4, {}}).shaded.visibility;
 		settings.mask = true;
@@ -421,7 +401,7 @@ TEST_CASE("aov: close to rays, and masks at less than half of the plain sum's er
 TEST_CASE("aov: one pixel of nine or of twenty-five, and those that these do not tell, are close to all of them", "[aov]")
 {
 	const SmallView view = viewOfLevel("cornell");
-	const VolumeSet set = trianglesOf(view.level, 0.6);
+	const VolumeSet set = setOf(trianglesOf(view.level), 0.6, false);
 	AovSettings settings;
 	const AovShaded all = aovOnCpu(view.gbuffer, set, settings, {4, {}});
 	const std::size_t pixels = all.shaded.visibility.size();

@@ -43,20 +43,18 @@ TEST_CASE("aov on OpenGL: the sum of all volumes, by both layouts and both kinds
 {
 	const Level level = builtinLevel("cornell");
 	const GBuffer gbuffer = castOf(level, viewOf(level.cameras.front(), 64, 48), 64, 48);
-	for (const bool two_sided : {false, true})
+	const bool two_sided = GENERATE(false, true);
+	const VolumeSet set = volumesOf(level, 0.4, 8, two_sided);
+	for (const bool storage : {false, true})
 	{
-		const VolumeSet set = volumesOf(level, 0.4, 8, two_sided);
-		for (const bool storage : {false, true})
+		for (const bool prisms : {false, true})
 		{
-			for (const bool prisms : {false, true})
-			{
-				isTwin(gbuffer, set, {storage, prisms, true, false},
-					   std::string(storage ? "storage buffers" : "textures") + (prisms ? ", prisms" : ", polygons"));
-			}
+			isTwin(gbuffer, set, {storage, prisms, true, false},
+				   std::string(storage ? "storage buffers" : "textures") + (prisms ? ", prisms" : ", polygons"));
 		}
-		isTwin(gbuffer, set, {false, false, true, true, false}, "back faces");
-		isTwin(gbuffer, set, {false, false, true, false, false}, "front faces of clusters that do not hold the eye");
 	}
+	isTwin(gbuffer, set, {false, false, true, true, false}, "back faces");
+	isTwin(gbuffer, set, {false, false, true, false, false}, "front faces of clusters that do not hold the eye");
 }
 
 TEST_CASE("aov on OpenGL: a hair behind the planes of volumes of one side", "[aov_gl]")
@@ -71,60 +69,48 @@ TEST_CASE("aov on OpenGL: a hair behind the planes of volumes of one side", "[ao
 	{
 		corner += 0.6 * kVolumeBias * set.distance_m * toward;
 	}
-	for (const bool prisms : {false, true})
-	{
-		isTwin(gbuffer, set, {false, prisms, true, false}, prisms ? "prisms" : "polygons");
-	}
+	const bool prisms = GENERATE(false, true);
+	isTwin(gbuffer, set, {false, prisms, true, false}, prisms ? "prisms" : "polygons");
 }
 
 TEST_CASE("aov on OpenGL: any projection, and an eye within volumes", "[aov_gl]")
 {
 	const Level level = builtinLevel("cornell");
 	const VolumeSet set = volumesOf(level, 0.5, 4);
-	for (const NamedProjection& projection : projections(4.0 / 3.0))
-	{
-		// From inside the box, where most volumes contain the eye.
-		for (const glm::dvec3 eye : {glm::dvec3(0.1, 0.3, 0.2), glm::dvec3(0.4, 0.9, -0.3)})
-		{
-			const glm::dmat4 view = glm::inverse(worldFromCamera(eye, {-0.2, 0.1, -0.4}));
-			isTwin(castOf(level, {view, projection.matrix}, 48, 36), set, {}, projection.name);
-		}
-	}
+	const NamedProjection projection = GENERATE(from_range(projections(4.0 / 3.0)));
+	// From inside the box, where most volumes contain the eye.
+	const glm::dvec3 eye = GENERATE(glm::dvec3(0.1, 0.3, 0.2), glm::dvec3(0.4, 0.9, -0.3));
+	const glm::dmat4 view = glm::inverse(worldFromCamera(eye, {-0.2, 0.1, -0.4}));
+	isTwin(castOf(level, {view, projection.matrix}, 48, 36), set, {}, projection.name);
 }
 
 TEST_CASE("aov on OpenGL: as on the CPU, clamped bounds, masks and one pixel of many, too", "[aov_gl]")
 {
 	const Level level = builtinLevel("cornell");
 	const GBuffer gbuffer = castOf(level, viewOf(level.cameras.front(), 61, 46), 61, 46);
-	for (const bool exact_bounds : {false, true})
-	{
-		VolumeSet set = volumesOf(level, 0.6, 8, exact_bounds);
-		set.exact_bounds = exact_bounds;
-		for (const int every_px : {1, 3, 5})
-		{
-			for (const int directions : {0, 32, 64, 128, 160, 192, 256})
-			{
-				AovSettings settings = exact();
-				settings.every_px = every_px;
-				settings.mask = directions > 0;
-				settings.directions = std::max(directions, 32);
-				const AovShaded expected = aovOnCpu(gbuffer, set, settings, {2, {}});
-				const AovShaded drawn = aovOnGl(gbuffer, set, settings);
-				const Difference difference = differenceOf(drawn.shaded.visibility, expected.shaded.visibility);
-				INFO(every_px << " px, " << directions << " directions: mean " << difference.mean << ", beyond 1/255 "
-							  << difference.beyond << ", most " << difference.worst);
-				// A direction that just misses an edge or a threshold changes one bit; and AOV's clamp cuts volumes where they
-				// still occlude, so a pixel at the cut is a step.
-				CHECK(difference.mean <= 1e-4);
-				CHECK(difference.beyond <= (settings.mask || !exact_bounds ? 0.01 : 0.001));
-				// Both draw the same pixels individually, except at a threshold of the rule.
-				CHECK(drawn.counts.pixels_alone * 100 >= expected.counts.pixels_alone * 99);
-				CHECK(drawn.counts.pixels_alone * 99 <= expected.counts.pixels_alone * 100);
-				CHECK((drawn.counts.pixels_alone > 0) == (every_px > 1));
-				CHECK(drawn.counts.fragments >= expected.counts.fragments);
-			}
-		}
-	}
+	const bool exact_bounds = GENERATE(false, true);
+	VolumeSet set = volumesOf(level, 0.6, 8, exact_bounds);
+	set.exact_bounds = exact_bounds;
+	const int every_px = GENERATE(1, 3, 5);
+	const int directions = GENERATE(0, 32, 64, 128, 160, 192, 256);
+	AovSettings settings = exact();
+	settings.every_px = every_px;
+	settings.mask = directions > 0;
+	settings.directions = std::max(directions, 32);
+	const AovShaded expected = aovOnCpu(gbuffer, set, settings, {2, {}});
+	const AovShaded drawn = aovOnGl(gbuffer, set, settings);
+	const Difference difference = differenceOf(drawn.shaded.visibility, expected.shaded.visibility);
+	INFO(every_px << " px, " << directions << " directions: mean " << difference.mean << ", beyond 1/255 " << difference.beyond
+				  << ", most " << difference.worst);
+	// A direction that just misses an edge or a threshold changes one bit; and AOV's clamp cuts volumes where they
+	// still occlude, so a pixel at the cut is a step.
+	CHECK(difference.mean <= 1e-4);
+	CHECK(difference.beyond <= (settings.mask || !exact_bounds ? 0.01 : 0.001));
+	// Both draw the same pixels individually, except at a threshold of the rule.
+	CHECK(drawn.counts.pixels_alone * 100 >= expected.counts.pixels_alone * 99);
+	CHECK(drawn.counts.pixels_alone * 99 <= expected.counts.pixels_alone * 100);
+	CHECK((drawn.counts.pixels_alone > 0) == (every_px > 1));
+	CHECK(drawn.counts.fragments >= expected.counts.fragments);
 }
 
 TEST_CASE("aov on OpenGL: fewer bits of the sum change it by less than their steps", "[aov_gl]")
@@ -133,26 +119,24 @@ TEST_CASE("aov on OpenGL: fewer bits of the sum change it by less than their ste
 	const GBuffer gbuffer = castOf(level, viewOf(level.cameras.front(), 32, 18), 32, 18);
 	const VolumeSet set = volumesOf(level, 1.0, 64);
 	const std::vector<float> expected = aovOnCpu(gbuffer, set, exact(), {2, {}}).shaded.visibility;
-	for (const AovTarget target : {AovTarget::r32f, AovTarget::r16f, AovTarget::r8})
-	{
-		AovSettings settings = exact();
-		settings.target = target;
-		const AovShaded drawn = aovOnGl(gbuffer, set, settings);
-		const Difference difference = differenceOf(drawn.shaded.visibility, expected);
-		INFO("mean " << difference.mean << ", beyond 1/255 " << difference.beyond << ", most " << difference.worst << ", "
-					 << drawn.counts.fragments << " fragments");
-		CHECK(difference.mean <= (target == AovTarget::r32f ? 1e-4 : target == AovTarget::r16f ? 1e-3 : 1e-2));
-		// Without depth bounds, which not every driver supports.
-		const AovShaded unbound = aovOnGl(gbuffer, set, settings, {}, {false, false, false, false});
-		CHECK(unbound.shaded.visibility == drawn.shaded.visibility);
-		CHECK(unbound.counts.fragments >= drawn.counts.fragments);
-		settings.cull = false;
-		const AovShaded all = aovOnGl(gbuffer, set, settings);
-		CHECK(all.shaded.visibility == drawn.shaded.visibility);
-		CHECK(all.counts.volumes_drawn == set.occluders.polygons.size());
-		CHECK(drawn.counts.volumes_drawn < all.counts.volumes_drawn);
-		CHECK(drawn.counts.fragments <= all.counts.fragments);
-	}
+	const AovTarget target = GENERATE(AovTarget::r32f, AovTarget::r16f, AovTarget::r8);
+	AovSettings settings = exact();
+	settings.target = target;
+	const AovShaded drawn = aovOnGl(gbuffer, set, settings);
+	const Difference difference = differenceOf(drawn.shaded.visibility, expected);
+	INFO("mean " << difference.mean << ", beyond 1/255 " << difference.beyond << ", most " << difference.worst << ", "
+				 << drawn.counts.fragments << " fragments");
+	CHECK(difference.mean <= (target == AovTarget::r32f ? 1e-4 : target == AovTarget::r16f ? 1e-3 : 1e-2));
+	// Without depth bounds, which not every driver supports.
+	const AovShaded unbound = aovOnGl(gbuffer, set, settings, {}, {false, false, false, false});
+	CHECK(unbound.shaded.visibility == drawn.shaded.visibility);
+	CHECK(unbound.counts.fragments >= drawn.counts.fragments);
+	settings.cull = false;
+	const AovShaded all = aovOnGl(gbuffer, set, settings);
+	CHECK(all.shaded.visibility == drawn.shaded.visibility);
+	CHECK(all.counts.volumes_drawn == set.occluders.polygons.size());
+	CHECK(drawn.counts.volumes_drawn < all.counts.volumes_drawn);
+	CHECK(drawn.counts.fragments <= all.counts.fragments);
 }
 
 TEST_CASE("aov on OpenGL: far from the origin as at it", "[aov_gl]")
@@ -178,41 +162,39 @@ TEST_CASE("aov on OpenGL: volumes that are cut, by both layouts and both kinds o
 {
 	const Level level = builtinLevel("cornell");
 	const GBuffer gbuffer = castOf(level, viewOf(level.cameras.front(), 64, 48), 64, 48);
-	for (const bool two_sided : {false, true})
+	const bool two_sided = GENERATE(false, true);
+	VolumeSet set = volumesOf(level, 0.6, 8, two_sided);
+	const AovShaded whole = aovOnGl(gbuffer, set, exact());
+	for (std::size_t i = 0; i < set.occluders.polygons.size(); ++i)
 	{
-		VolumeSet set = volumesOf(level, 0.6, 8, two_sided);
-		const AovShaded whole = aovOnGl(gbuffer, set, exact());
-		for (std::size_t i = 0; i < set.occluders.polygons.size(); ++i)
-		{
-			set.occluders.polygons[i].reach = static_cast<float>(i % 4 + 1) / 4.0F;
-			set.occluders.polygons[i].side_reach = set.occluders.polygons[i].reach * static_cast<float>(i % 3 + 5) / 8.0F;
-		}
-		const std::vector<float> expected = visibilityOf(gbuffer, set, true);
-		CHECK(differenceOf(whole.shaded.visibility, expected).mean > 0.001);
-		for (const bool storage : {false, true})
-		{
-			for (const bool prisms : {false, true})
-			{
-				const AovShaded drawn = aovOnGl(gbuffer, set, exact(), {}, {storage, prisms, true, false});
-				const Difference difference = differenceOf(drawn.shaded.visibility, expected);
-				INFO((storage ? "storage" : "textures")
-					 << (prisms ? ", prisms" : ", polygons") << ": mean " << difference.mean
-					 << ", beyond 1/255: " << difference.beyond << ", most " << difference.worst << ", " << drawn.counts.fragments
-					 << " of " << whole.counts.fragments << " fragments");
-				// A pixel at a cut is a step, and prisms are rounded.
-				CHECK(difference.mean <= 5e-4);
-				CHECK(difference.beyond <= 0.01);
-				CHECK(drawn.counts.fragments < whole.counts.fragments);
-			}
-		}
-		AovSettings masks = exact();
-		masks.mask = true;
-		const AovShaded on_cpu = aovOnCpu(gbuffer, set, masks, {2, {}});
-		const Difference difference = differenceOf(aovOnGl(gbuffer, set, masks).shaded.visibility, on_cpu.shaded.visibility);
-		INFO("masks: mean " << difference.mean << ", beyond 1/255: " << difference.beyond << ", most " << difference.worst);
-		CHECK(difference.mean <= 2e-4);
-		CHECK(difference.beyond <= 0.01);
+		set.occluders.polygons[i].reach = static_cast<float>(i % 4 + 1) / 4.0F;
+		set.occluders.polygons[i].side_reach = set.occluders.polygons[i].reach * static_cast<float>(i % 3 + 5) / 8.0F;
 	}
+	const std::vector<float> expected = visibilityOf(gbuffer, set, true);
+	CHECK(differenceOf(whole.shaded.visibility, expected).mean > 0.001);
+	for (const bool storage : {false, true})
+	{
+		for (const bool prisms : {false, true})
+		{
+			const AovShaded drawn = aovOnGl(gbuffer, set, exact(), {}, {storage, prisms, true, false});
+			const Difference difference = differenceOf(drawn.shaded.visibility, expected);
+			INFO((storage ? "storage" : "textures")
+				 << (prisms ? ", prisms" : ", polygons") << ": mean " << difference.mean << ", beyond 1/255: " << difference.beyond
+				 << ", most " << difference.worst << ", " << drawn.counts.fragments << " of " << whole.counts.fragments
+				 << " fragments");
+			// A pixel at a cut is a step, and prisms are rounded.
+			CHECK(difference.mean <= 5e-4);
+			CHECK(difference.beyond <= 0.01);
+			CHECK(drawn.counts.fragments < whole.counts.fragments);
+		}
+	}
+	AovSettings masks = exact();
+	masks.mask = true;
+	const AovShaded on_cpu = aovOnCpu(gbuffer, set, masks, {2, {}});
+	const Difference difference = differenceOf(aovOnGl(gbuffer, set, masks).shaded.visibility, on_cpu.shaded.visibility);
+	INFO("masks: mean " << difference.mean << ", beyond 1/255: " << difference.beyond << ", most " << difference.worst);
+	CHECK(difference.mean <= 2e-4);
+	CHECK(difference.beyond <= 0.01);
 }
 
 TEST_CASE("aov on OpenGL: faces chosen volume by volume: the same picture, fewer fragments", "[aov_gl]")
@@ -221,24 +203,18 @@ TEST_CASE("aov on OpenGL: faces chosen volume by volume: the same picture, fewer
 	const VolumeSet set = volumesOf(level, 0.4, 8);
 	const GBuffer gbuffer = castOf(level, viewOf(level.cameras.front(), 64, 48), 64, 48);
 	// Without depth bounds, which leave out much the same fragments where a driver has them.
-	for (const int every_px : {1, 3})
-	{
-		AovSettings settings = exact();
-		settings.every_px = every_px;
-		const AovShaded front = aovOnGl(gbuffer, set, settings, {}, {false, false, false, false, false});
-		const AovShaded back = aovOnGl(gbuffer, set, settings, {}, {false, false, false, true, false});
-		for (const bool storage : {false, true})
-		{
-			for (const bool prisms : {false, true})
-			{
-				const AovShaded chosen = aovOnGl(gbuffer, set, settings, {}, {storage, prisms, false, false, true});
-				INFO(every_px << " px, " << front.counts.fragments << " fragments of front faces, " << back.counts.fragments
-							  << " of back faces, " << chosen.counts.fragments << " chosen");
-				CHECK(differenceOf(chosen.shaded.visibility, front.shaded.visibility).worst <= (prisms ? 0.01 : 1e-5));
-				CHECK(10 * chosen.counts.fragments < 9 * std::min(front.counts.fragments, back.counts.fragments));
-			}
-		}
-	}
+	const int every_px = GENERATE(1, 3);
+	AovSettings settings = exact();
+	settings.every_px = every_px;
+	const AovShaded front = aovOnGl(gbuffer, set, settings, {}, {false, false, false, false, false});
+	const AovShaded back = aovOnGl(gbuffer, set, settings, {}, {false, false, false, true, false});
+	const bool storage = GENERATE(false, true);
+	const bool prisms = GENERATE(false, true);
+	const AovShaded chosen = aovOnGl(gbuffer, set, settings, {}, {storage, prisms, false, false, true});
+	INFO(every_px << " px, " << front.counts.fragments << " fragments of front faces, " << back.counts.fragments
+				  << " of back faces, " << chosen.counts.fragments << " chosen");
+	CHECK(differenceOf(chosen.shaded.visibility, front.shaded.visibility).worst <= (prisms ? 0.01 : 1e-5));
+	CHECK(10 * chosen.counts.fragments < 9 * std::min(front.counts.fragments, back.counts.fragments));
 }
 
 TEST_CASE("aov on OpenGL: volumes that float before a surface, or lie behind one, have no fragments", "[aov_gl]")
@@ -254,22 +230,20 @@ TEST_CASE("aov on OpenGL: volumes that float before a surface, or lie behind one
 	gbuffer.view = {glm::dmat4(1.0), glm::perspective(1.0, 4.0 / 3.0, 0.1, 100.0)};
 	gbuffer.depth.assign(32 * 24, 4.0F);
 	gbuffer.normals.assign(32 * 24, glm::vec3(0.0F, 0.0F, 1.0F));
-	for (const double z : {-2.0, -6.0, -3.9})
-	{
-		VolumeSet set;
-		set.distance_m = 0.2;
-		set.exact_bounds = true; // required for choosing faces
-		set.occluders.corners = square(z, 0.5);
-		set.occluders.polygons = {{0, 4, 0, 1.0F, true}};
-		clusterVolumes(set, {}, {});
-		AovSettings all = exact();
-		all.cull = false; // otherwise whole clusters are culled
-		const uint64_t chosen = aovOnGl(gbuffer, set, all).counts.fragments;
-		const uint64_t front = aovOnGl(gbuffer, set, all, {}, {false, false, false, false, false}).counts.fragments;
-		const uint64_t back = aovOnGl(gbuffer, set, all, {}, {false, false, false, true, false}).counts.fragments;
-		INFO("at " << z << ": " << chosen << " chosen, " << front << " front, " << back << " back");
-		CHECK((front > 0) == (z > -5.0));
-		CHECK((back > 0) == (z < -3.0));
-		CHECK((chosen > 0) == (z == -3.9));
-	}
+	const double z = GENERATE(-2.0, -6.0, -3.9);
+	VolumeSet set;
+	set.distance_m = 0.2;
+	set.exact_bounds = true; // required for choosing faces
+	set.occluders.corners = square(z, 0.5);
+	set.occluders.polygons = {{0, 4, 0, 1.0F, true}};
+	clusterVolumes(set, {}, {});
+	AovSettings all = exact();
+	all.cull = false; // otherwise whole clusters are culled
+	const uint64_t chosen = aovOnGl(gbuffer, set, all).counts.fragments;
+	const uint64_t front = aovOnGl(gbuffer, set, all, {}, {false, false, false, false, false}).counts.fragments;
+	const uint64_t back = aovOnGl(gbuffer, set, all, {}, {false, false, false, true, false}).counts.fragments;
+	INFO("at " << z << ": " << chosen << " chosen, " << front << " front, " << back << " back");
+	CHECK((front > 0) == (z > -5.0));
+	CHECK((back > 0) == (z < -3.0));
+	CHECK((chosen > 0) == (z == -3.9));
 }

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Visibility at vertices compared with closed forms and with rays.
 #include "bake_levels.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "bake/bake.h"
 #include "bake/probes.h"
 #include "bake/surface_samples.h"
-#include "core/file.h"
 #include "core/json_reader.h"
 #include "scene/gbuffer.h"
 #include "scene/level_glb.h"
@@ -65,16 +62,14 @@ TEST_CASE("bake: a plane reads 1, by either fit", "[bake]")
 	Level level = emptyLevel();
 	addFloor(level, {-1.0, 0.0, -1.0}, 2.0, 4);
 	const Tracer tracer(level, {});
-	for (const BakeFit fit : {BakeFit::surface, BakeFit::points})
-	{
-		BakeSettings settings = within(10.0);
-		settings.fit = fit;
-		const VertexBake bake = bakeVertices(tracer, settings, {});
-		REQUIRE(bake.visibility.size() == level.positions.size());
-		CHECK(std::all_of(bake.visibility.begin(), bake.visibility.end(), [](float v) { return v > 0.9999F; }));
-		CHECK(bake.buried == 0);
-		CHECK(checkBake(tracer, level, bake, settings, 100, {}).rmse < 1e-4);
-	}
+	const BakeFit fit = GENERATE(BakeFit::surface, BakeFit::points);
+	BakeSettings settings = within(10.0);
+	settings.fit = fit;
+	const VertexBake bake = bakeVertices(tracer, settings, {});
+	REQUIRE(bake.visibility.size() == level.positions.size());
+	CHECK(std::all_of(bake.visibility.begin(), bake.visibility.end(), [](float v) { return v > 0.9999F; }));
+	CHECK(bake.buried == 0);
+	CHECK(checkBake(tracer, level, bake, settings, 100, {}).rmse < 1e-4);
 }
 
 TEST_CASE("bake: beside a wall without end a floor reads 1/2, as far as the edge that they share", "[bake]")
@@ -249,20 +244,16 @@ TEST_CASE("bake: odd levels: one triangle, unused vertices, slivers, one ray", "
 	addTriangle(level, addVertex(level, {0.0, 0.0, 0.0}), addVertex(level, {1.0, 0.0, 0.0}), addVertex(level, {0.0, 1e-12, 0.0}));
 	addTriangle(level, addVertex(level, {0.0, 0.0, 1e6}), addVertex(level, {1e6, 0.0, 0.0}), addVertex(level, {0.0, 1e6, 0.0}));
 	const Tracer tracer(level, {});
-	for (const int rays : {1, 33})
-	{
-		BakeSettings settings = within(1.0);
-		settings.rays = rays;
-		for (const BakeFit fit : {BakeFit::surface, BakeFit::points})
-		{
-			settings.fit = fit;
-			const VertexBake bake = bakeVertices(tracer, settings, {});
-			REQUIRE(bake.visibility.size() == 7);
-			CHECK(std::all_of(bake.visibility.begin(), bake.visibility.end(), [](float v) { return v >= 0.0F && v <= 1.0F; }));
-			CHECK(std::isfinite(bake.standard_error));
-			CHECK(std::isfinite(checkBake(tracer, level, bake, settings, 10, {}).rmse));
-		}
-	}
+	const int rays = GENERATE(1, 33);
+	BakeSettings settings = within(1.0);
+	settings.rays = rays;
+	const BakeFit fit = GENERATE(BakeFit::surface, BakeFit::points);
+	settings.fit = fit;
+	const VertexBake bake = bakeVertices(tracer, settings, {});
+	REQUIRE(bake.visibility.size() == 7);
+	CHECK(std::all_of(bake.visibility.begin(), bake.visibility.end(), [](float v) { return v >= 0.0F && v <= 1.0F; }));
+	CHECK(std::isfinite(bake.standard_error));
+	CHECK(std::isfinite(checkBake(tracer, level, bake, settings, 10, {}).rmse));
 }
 
 TEST_CASE("bake: only chosen parts darken, and only chosen parts get values", "[bake]")
@@ -345,20 +336,18 @@ TEST_CASE("bake: bent normals beside a wall without end lean away from it", "[ba
 	BakeSettings settings = within(std::numeric_limits<double>::infinity());
 	settings.rays = 1024;
 	settings.bent = true;
-	for (const BakeFit fit : {BakeFit::surface, BakeFit::points})
+	const BakeFit fit = GENERATE(BakeFit::surface, BakeFit::points);
+	settings.fit = fit;
+	const VertexBake bake = bakeVertices(tracer, settings, {});
+	// Over the quarter sphere: (1/π) ∫ ω (n·ω) dω = (2/(3π), 1/3, 0).
+	const glm::vec3 expected = glm::normalize(glm::vec3(2.0F / (3.0F * 3.14159265F), 1.0F / 3.0F, 0.0F));
+	for (std::size_t v = 0; v < floor; ++v)
 	{
-		settings.fit = fit;
-		const VertexBake bake = bakeVertices(tracer, settings, {});
-		// Over the quarter sphere: (1/π) ∫ ω (n·ω) dω = (2/(3π), 1/3, 0).
-		const glm::vec3 expected = glm::normalize(glm::vec3(2.0F / (3.0F * 3.14159265F), 1.0F / 3.0F, 0.0F));
-		for (std::size_t v = 0; v < floor; ++v)
-		{
-			CAPTURE(v, bake.bent[v].x, bake.bent[v].y);
-			const bool within_wall = fit == BakeFit::points && level.positions[v].x == 0.0;
-			CHECK((within_wall || glm::distance(bake.bent[v], expected) < 0.05F));
-		}
-		CHECK(checkBake(tracer, level, bake, settings, 100, {}).angle_rad < 0.1);
+		CAPTURE(v, bake.bent[v].x, bake.bent[v].y);
+		const bool within_wall = fit == BakeFit::points && level.positions[v].x == 0.0;
+		CHECK((within_wall || glm::distance(bake.bent[v], expected) < 0.05F));
 	}
+	CHECK(checkBake(tracer, level, bake, settings, 100, {}).angle_rad < 0.1);
 }
 
 TEST_CASE("bake: what is baked beside something is the difference to it", "[bake]")

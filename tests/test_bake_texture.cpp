@@ -2,15 +2,10 @@
 // Visibility in a texture compared with rays; charts and their edges.
 #include "bake_levels.h"
 #include "level_files.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "bake/bake.h"
 #include "bake/texture.h"
-#include "core/file.h"
 #include "scene/level_glb.h"
-#include "scene/load.h"
-#include "scene/load_parts.h"
 
 #include <tuple>
 
@@ -33,6 +28,15 @@ Level floorAndBoxWithCharts()
 		level.uvs[v] = corner + size * level.uvs[v];
 	}
 	return level;
+}
+
+// Gives the material a mask of one texel.
+void addMask(Level& level)
+{
+	level.material_list[0].alpha_mode = AlphaMode::mask;
+	level.material_list[0].mask = 0;
+	level.masks.push_back({"leaf", 1, 1, Wrap::repeat, Wrap::repeat, {255}});
+	measureAlpha(level.material_list[0], level.masks);
 }
 
 // A quad at y = 0 and its other side at the same place, of two triangles each; the last one of the back is wound like the front.
@@ -282,10 +286,7 @@ TEST_CASE("bake: empty texels are filled from their nearest neighbours", "[bake]
 TEST_CASE("bake: a second set of coordinates is read where it is asked for, and written beside a mask's", "[bake][emit]")
 {
 	Level level = floorAndBoxWithCharts();
-	level.material_list[0].alpha_mode = AlphaMode::mask;
-	level.material_list[0].mask = 0;
-	level.masks.push_back({"leaf", 1, 1, Wrap::repeat, Wrap::repeat, {255}});
-	measureAlpha(level.material_list[0], level.masks);
+	addMask(level);
 	std::vector<glm::vec2> second = level.uvs;
 	for (glm::vec2& uv : second)
 	{
@@ -313,30 +314,28 @@ TEST_CASE("bake: a second reading has the triangles of the first, whatever its c
 {
 	const TemporaryFolder folder;
 	const std::string path = folder / "a.glb";
-	for (const char* const mode : {"OPAQUE", "MASK", "BLEND"})
+	const char* const mode = GENERATE(as<const char*>{}, "OPAQUE", "MASK", "BLEND");
+	for (const auto& [first_differ, second_differ, second] :
+		 {std::tuple{false, true, true}, {true, false, true}, {true, true, true}, {false, false, false}, {true, false, false}})
 	{
-		for (const auto& [first_differ, second_differ, second] :
-			 {std::tuple{false, true, true}, {true, false, true}, {true, true, true}, {false, false, false}, {true, false, false}})
+		INFO(mode << first_differ << second_differ << second);
+		const std::string bytes = sheetGlb({{"alphaMode", mode}}, {first_differ, second_differ}, second, true);
+		writeFile(path, bytes);
+		const Level level = loadLevel(path, {}, {}).level;
+		// With a mask, the copy with other coordinates is kept.
+		const bool stays = std::string(mode) != "OPAQUE" && first_differ;
+		CHECK(level.triangles.size() == (stays ? 4 : 3));
+		const std::vector<glm::vec2> found = loadSecondUvs(path, {}, level, {});
+		const BakedValues baked = loadBakedValues(path, level, {});
+		REQUIRE(found.size() == (second ? level.positions.size() : 0));
+		REQUIRE(baked.front.size() == level.positions.size());
+		CHECK(baked.front.size() == (stays ? 8 : 7));
+		for (std::size_t v = 0; v < baked.front.size(); ++v)
 		{
-			INFO(mode << first_differ << second_differ << second);
-			const std::string bytes = sheetGlb({{"alphaMode", mode}}, {first_differ, second_differ}, second, true);
-			writeFile(path, bytes);
-			const Level level = loadLevel(path, {}, {}).level;
-			// With a mask, the copy with other coordinates is kept.
-			const bool stays = std::string(mode) != "OPAQUE" && first_differ;
-			CHECK(level.triangles.size() == (stays ? 4 : 3));
-			const std::vector<glm::vec2> found = loadSecondUvs(path, {}, level, {});
-			const BakedValues baked = loadBakedValues(path, level, {});
-			REQUIRE(found.size() == (second ? level.positions.size() : 0));
-			REQUIRE(baked.front.size() == level.positions.size());
-			CHECK(baked.front.size() == (stays ? 8 : 7));
-			for (std::size_t v = 0; v < baked.front.size(); ++v)
-			{
-				// In order of first use.
-				CHECK(baked.front[v] == static_cast<float>(v == 5 ? 6 : v == 6 ? 5 : v) / 8.0F);
-				const glm::vec2 place = 0.5F * glm::vec2(level.positions[v].x, level.positions[v].z);
-				CHECK((!second || found[v] == place + glm::vec2(second_differ && v >= 4 ? 0.5F : 0.0F)));
-			}
+			// In order of first use.
+			CHECK(baked.front[v] == static_cast<float>(v == 5 ? 6 : v == 6 ? 5 : v) / 8.0F);
+			const glm::vec2 place = 0.5F * glm::vec2(level.positions[v].x, level.positions[v].z);
+			CHECK((!second || found[v] == place + glm::vec2(second_differ && v >= 4 ? 0.5F : 0.0F)));
 		}
 	}
 }
@@ -352,10 +351,7 @@ TEST_CASE("bake: a second set of coordinates is read of sheets whose triangles w
 						0.125F * static_cast<float>(level.positions[v].z + 2.0)};
 	}
 	level.material_list[0].two_sided = true;
-	level.material_list[0].alpha_mode = AlphaMode::mask;
-	level.material_list[0].mask = 0;
-	level.masks.push_back({"leaf", 1, 1, Wrap::repeat, Wrap::repeat, {255}});
-	measureAlpha(level.material_list[0], level.masks);
+	addMask(level);
 	std::vector<glm::vec2> second = level.uvs;
 	for (glm::vec2& uv : second)
 	{

@@ -4,8 +4,6 @@
 #include "testing.h"
 
 #include "bake/unwrap.h"
-#include "core/math.h"
-#include "core/random.h"
 
 namespace
 {
@@ -127,6 +125,22 @@ Level sphere(int rows)
 		}
 	}
 	return level;
+}
+
+// Adds the level's triangles again, larger and elsewhere.
+void addAgain(Level& level, double scale, glm::dvec3 move)
+{
+	const std::size_t count = level.triangles.size();
+	const auto vertices = static_cast<uint32_t>(level.positions.size());
+	for (uint32_t v = 0; v < vertices; ++v)
+	{
+		addVertex(level, scale * level.positions[v] + move);
+	}
+	for (std::size_t t = 0; t < count; ++t)
+	{
+		const glm::uvec3 c = level.triangles[t] + vertices;
+		addTriangle(level, c.x, c.y, c.z);
+	}
 }
 
 } // namespace
@@ -258,17 +272,9 @@ TEST_CASE("unwrap: a mesh whose first place has no size gets charts at the other
 {
 	Level level = sphere(8);
 	const std::size_t count = level.triangles.size();
-	const auto vertices = static_cast<uint32_t>(level.positions.size());
-	for (uint32_t v = 0; v < vertices; ++v)
-	{
-		addVertex(level, level.positions[v]);
-		level.positions[v] = glm::dvec3(0.0);
-	}
-	for (std::size_t t = 0; t < count; ++t)
-	{
-		const glm::uvec3 c = level.triangles[t];
-		addTriangle(level, c.x + vertices, c.y + vertices, c.z + vertices);
-	}
+	const auto vertices = static_cast<std::ptrdiff_t>(level.positions.size());
+	addAgain(level, 1.0, {});
+	std::fill_n(level.positions.begin(), vertices, glm::dvec3(0.0));
 	const std::vector<UnwrapPiece> pieces{pieceOf(0, count), pieceOf(count, count, 0)};
 	const Unwrapped made = unwrap(level, pieces, across(256), {});
 	checkCharts(level, made);
@@ -280,16 +286,7 @@ TEST_CASE("unwrap: places of one mesh get the same charts in their own sizes", "
 {
 	Level level = sphere(8);
 	const std::size_t count = level.triangles.size();
-	const auto vertices = static_cast<uint32_t>(level.positions.size());
-	for (uint32_t v = 0; v < vertices; ++v)
-	{
-		addVertex(level, 2.0 * level.positions[v] + glm::dvec3(5.0, 0.0, 0.0));
-	}
-	for (std::size_t t = 0; t < count; ++t)
-	{
-		const glm::uvec3 c = level.triangles[t];
-		addTriangle(level, c.x + vertices, c.y + vertices, c.z + vertices);
-	}
+	addAgain(level, 2.0, {5.0, 0.0, 0.0});
 	const std::vector<UnwrapPiece> pieces{pieceOf(0, count), pieceOf(count, count, 0)};
 	const Unwrapped made = unwrap(level, pieces, across(512), {});
 	checkCharts(level, made);

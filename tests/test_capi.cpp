@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The C API: what it returns, and that nothing a caller passes gets further than an error.
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/file.h"
-#include "core/random.h"
 #include "nook/nook.h"
 #include "nook/nook.hpp"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "testing.h"
 
-#include "core/math.h"
 #include "pattern/cells.h"
 #include "pattern/energy.h"
 #include "pattern/energy_kernels.h"
@@ -101,32 +100,26 @@ double alongAxis(Domain domain, const glm::dvec3& gradient, const glm::dvec3& p,
 
 TEST_CASE("cells: integrals sum to 1 and centroids balance, whatever the points", "[pattern]")
 {
-	for (const Domain domain : kCellDomains)
-	{
-		for (const int count : {1, 2, 3, 4, 7, 40, 300})
-		{
-			const Cells cells = exactCells(domain, somePoints(domain, count, 5));
-			INFO("domain " << static_cast<int>(domain) << " count " << count);
-			CHECK(sumOf(cells.integrals) == Approx(1.0).margin(1e-12));
-			const glm::dvec3 moment = momentOf(cells);
-			CHECK(std::fabs(moment.x) < 1e-12);
-			CHECK(std::fabs(moment.y) < 1e-12);
-			CHECK(std::fabs(moment.z) < 1e-12);
-		}
-	}
+	const Domain domain = GENERATE(from_range(kCellDomains));
+	const int count = GENERATE(1, 2, 3, 4, 7, 40, 300);
+	const Cells cells = exactCells(domain, somePoints(domain, count, 5));
+	INFO("domain " << static_cast<int>(domain) << " count " << count);
+	CHECK(sumOf(cells.integrals) == Approx(1.0).margin(1e-12));
+	const glm::dvec3 moment = momentOf(cells);
+	CHECK(std::fabs(moment.x) < 1e-12);
+	CHECK(std::fabs(moment.y) < 1e-12);
+	CHECK(std::fabs(moment.z) < 1e-12);
 }
 
 TEST_CASE("cells: two points cut the domain at a known distance", "[pattern]")
 {
-	for (const double d : {-0.9, -0.3, 0.0, 0.2, 0.75})
-	{
-		const std::vector<glm::dvec3> points{{d - 0.05, 0.0, 0.0}, {d + 0.05, 0.0, 0.0}};
-		const double beyond = 0.25 * (2.0 - 3.0 * d + d * d * d); // a spherical segment; the chord density projects the ball
-		CHECK(exactCells(Domain::disk, points).integrals[1] == Approx(beyond).margin(1e-13));
-		CHECK(exactCells(Domain::ball, points).integrals[1] == Approx(beyond).margin(1e-13));
-		const double segment = (std::acos(d) - d * std::sqrt(1.0 - d * d)) / kPi; // a circular segment
-		CHECK(exactCells(Domain::hemisphere, points).integrals[1] == Approx(segment).margin(1e-13));
-	}
+	const double d = GENERATE(-0.9, -0.3, 0.0, 0.2, 0.75);
+	const std::vector<glm::dvec3> points{{d - 0.05, 0.0, 0.0}, {d + 0.05, 0.0, 0.0}};
+	const double beyond = 0.25 * (2.0 - 3.0 * d + d * d * d); // a spherical segment; the chord density projects the ball
+	CHECK(exactCells(Domain::disk, points).integrals[1] == Approx(beyond).margin(1e-13));
+	CHECK(exactCells(Domain::ball, points).integrals[1] == Approx(beyond).margin(1e-13));
+	const double segment = (std::acos(d) - d * std::sqrt(1.0 - d * d)) / kPi; // a circular segment
+	CHECK(exactCells(Domain::hemisphere, points).integrals[1] == Approx(segment).margin(1e-13));
 }
 
 TEST_CASE("cells: symmetric sets, whose cells meet in the centre, share evenly", "[pattern]")
@@ -167,63 +160,56 @@ TEST_CASE("cells: symmetric sets, whose cells meet in the centre, share evenly",
 
 TEST_CASE("cells: doubled points leave one cell and an empty one", "[pattern]")
 {
-	for (const Domain domain : kCellDomains)
-	{
-		std::vector<glm::dvec3> points = somePoints(domain, 9, 2);
-		points.push_back(points[4]);
-		const Cells cells = exactCells(domain, points);
-		CHECK(sumOf(cells.integrals) == Approx(1.0).margin(1e-12));
-		CHECK(std::min(cells.integrals[4], cells.integrals[9]) == 0.0);
-	}
+	const Domain domain = GENERATE(from_range(kCellDomains));
+	std::vector<glm::dvec3> points = somePoints(domain, 9, 2);
+	points.push_back(points[4]);
+	const Cells cells = exactCells(domain, points);
+	CHECK(sumOf(cells.integrals) == Approx(1.0).margin(1e-12));
+	CHECK(std::min(cells.integrals[4], cells.integrals[9]) == 0.0);
 }
 
 TEST_CASE("cells: the paper's grids agree with the exact integrals to their own resolution", "[pattern]")
 {
-	for (const Domain domain : kCellDomains)
+	const Domain domain = GENERATE(from_range(kCellDomains));
+	const std::vector<glm::dvec3> points = somePoints(domain, 20, 3);
+	const Cells exact = exactCells(domain, points);
+	const Cells discrete = gridCells(domain, points);
+	for (std::size_t i = 0; i < points.size(); ++i)
 	{
-		const std::vector<glm::dvec3> points = somePoints(domain, 20, 3);
-		const Cells exact = exactCells(domain, points);
-		const Cells discrete = gridCells(domain, points);
-		for (std::size_t i = 0; i < points.size(); ++i)
-		{
-			CHECK(discrete.integrals[i] == Approx(exact.integrals[i]).margin(5e-4));
-			glm::dvec3 difference = discrete.centroids[i] - exact.centroids[i];
-			difference.z = isPlanar(domain) ? 0.0 : difference.z; // plane cells have plane centroids
-			CHECK(glm::length(difference) < 5e-3);
-		}
+		CHECK(discrete.integrals[i] == Approx(exact.integrals[i]).margin(5e-4));
+		glm::dvec3 difference = discrete.centroids[i] - exact.centroids[i];
+		difference.z = isPlanar(domain) ? 0.0 : difference.z; // plane cells have plane centroids
+		CHECK(glm::length(difference) < 5e-3);
 	}
 }
 
 TEST_CASE("cells: the gradient of the integrals is that of finite differences", "[pattern]")
 {
 	constexpr double kStep = 1e-5;
-	for (const Domain domain : kCellDomains)
+	const Domain domain = GENERATE(from_range(kCellDomains));
+	const std::vector<glm::dvec3> points = somePoints(domain, 12, 7);
+	std::vector<double> factors(points.size());
+	Random random(11);
+	for (double& factor : factors)
 	{
-		const std::vector<glm::dvec3> points = somePoints(domain, 12, 7);
-		std::vector<double> factors(points.size());
-		Random random(11);
-		for (double& factor : factors)
+		factor = random.uniform();
+	}
+	const auto value = [&](const std::vector<glm::dvec3>& at)
+	{
+		const Cells cells = exactCells(domain, at);
+		return std::inner_product(factors.begin(), factors.end(), cells.integrals.begin(), 0.0);
+	};
+	std::vector<glm::dvec3> gradient(points.size(), glm::dvec3(0.0));
+	addCellGradient(domain, points, exactCells(domain, points).facets, factors, gradient);
+	for (std::size_t i = 0; i < points.size(); ++i)
+	{
+		for (int axis = 0; axis < (isPlanar(domain) ? 2 : 3); ++axis)
 		{
-			factor = random.uniform();
-		}
-		const auto value = [&](const std::vector<glm::dvec3>& at)
-		{
-			const Cells cells = exactCells(domain, at);
-			return std::inner_product(factors.begin(), factors.end(), cells.integrals.begin(), 0.0);
-		};
-		std::vector<glm::dvec3> gradient(points.size(), glm::dvec3(0.0));
-		addCellGradient(domain, points, exactCells(domain, points).facets, factors, gradient);
-		for (std::size_t i = 0; i < points.size(); ++i)
-		{
-			for (int axis = 0; axis < (isPlanar(domain) ? 2 : 3); ++axis)
-			{
-				const double difference =
-					(value(nudged(domain, points, i, axis, kStep)) - value(nudged(domain, points, i, axis, -kStep))) /
-					(2.0 * kStep);
-				glm::dvec3 g = gradient[i];
-				g.z = isPlanar(domain) ? 0.0 : g.z;
-				CHECK(alongAxis(domain, g, points[i], axis) == Approx(difference).margin(1e-7));
-			}
+			const double difference =
+				(value(nudged(domain, points, i, axis, kStep)) - value(nudged(domain, points, i, axis, -kStep))) / (2.0 * kStep);
+			glm::dvec3 g = gradient[i];
+			g.z = isPlanar(domain) ? 0.0 : g.z;
+			CHECK(alongAxis(domain, g, points[i], axis) == Approx(difference).margin(1e-7));
 		}
 	}
 }
@@ -274,35 +260,31 @@ TEST_CASE("energy: the gradient is that of finite differences, for every part", 
 
 TEST_CASE("energy: noise and bias make up the whole", "[pattern]")
 {
-	for (const Domain domain : {Domain::disk, Domain::ball, Domain::hemisphere})
+	const Domain domain = GENERATE(Domain::disk, Domain::ball, Domain::hemisphere);
+	const std::vector<glm::dvec3> points = somePoints(domain, 10, 9);
+	const std::vector<double> weights(10, 0.1);
+	const auto part = [&](Part which)
 	{
-		const std::vector<glm::dvec3> points = somePoints(domain, 10, 9);
-		const std::vector<double> weights(10, 0.1);
-		const auto part = [&](Part which)
-		{
-			return squaredError(domain, Ensemble::plane, which, points, weights);
-		};
-		CHECK(part(Part::noise) + part(Part::bias) == Approx(part(Part::whole)).epsilon(1e-10));
-		CHECK(part(Part::noise) > 0.0);
-		CHECK(part(Part::bias) > 0.0);
-	}
+		return squaredError(domain, Ensemble::plane, which, points, weights);
+	};
+	CHECK(part(Part::noise) + part(Part::bias) == Approx(part(Part::whole)).epsilon(1e-10));
+	CHECK(part(Part::noise) > 0.0);
+	CHECK(part(Part::bias) > 0.0);
 }
 
 TEST_CASE("energy: rows of a large set and pairs of a small one are the same sum", "[pattern]")
 {
 	// 1100 points, and the union of a pattern with itself: equal shares of one half.
-	for (const Domain domain : {Domain::disk, Domain::ball})
-	{
-		const std::vector<glm::dvec3> points = somePoints(domain, 550, 6);
-		std::vector<glm::dvec3> twice = points;
-		twice.insert(twice.end(), points.begin(), points.end());
-		const double one = squaredError(domain, Ensemble::plane, Part::whole, points, std::vector<double>(550, 1.0 / 550.0));
-		const double two = squaredError(domain, Ensemble::plane, Part::whole, twice, std::vector<double>(1100, 1.0 / 1100.0));
-		const double two_threads =
-			squaredError(domain, Ensemble::plane, Part::whole, twice, std::vector<double>(1100, 1.0 / 1100.0), nullptr, 2);
-		CHECK(two == Approx(one).epsilon(1e-6));
-		CHECK(two == two_threads);
-	}
+	const Domain domain = GENERATE(Domain::disk, Domain::ball);
+	const std::vector<glm::dvec3> points = somePoints(domain, 550, 6);
+	std::vector<glm::dvec3> twice = points;
+	twice.insert(twice.end(), points.begin(), points.end());
+	const double one = squaredError(domain, Ensemble::plane, Part::whole, points, std::vector<double>(550, 1.0 / 550.0));
+	const double two = squaredError(domain, Ensemble::plane, Part::whole, twice, std::vector<double>(1100, 1.0 / 1100.0));
+	const double two_threads =
+		squaredError(domain, Ensemble::plane, Part::whole, twice, std::vector<double>(1100, 1.0 / 1100.0), nullptr, 2);
+	CHECK(two == Approx(one).epsilon(1e-6));
+	CHECK(two == two_threads);
 }
 
 TEST_CASE("energy: many pairs of lines have the bits of each alone", "[pattern]")

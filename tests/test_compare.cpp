@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "testing.h"
 
-#include "core/random.h"
 #include "image/compare.h"
 #include "image/drawing.h"
 #include "image/visibility_image.h"
@@ -309,14 +308,12 @@ TEST_CASE("measure: SSIM and FLIP agree with slow twins", "[compare]")
 	{
 		CHECK(compared(*t, *r).ssim.value() == Approx(slowSsim(*t, *r)).epsilon(1e-9));
 	}
-	for (const double ppd : {20.0, 67.0})
-	{
-		CompareSettings settings;
-		settings.pixels_per_degree = ppd;
-		const SlowFlip slow(ppd);
-		CHECK(compared(step, smooth, settings).flip == Approx(slow.mean(step, smooth)).epsilon(5e-5));
-		CHECK(compared(rough, step, settings).flip == Approx(slow.mean(rough, step)).epsilon(5e-5));
-	}
+	const double ppd = GENERATE(20.0, 67.0);
+	CompareSettings settings;
+	settings.pixels_per_degree = ppd;
+	const SlowFlip slow(ppd);
+	CHECK(compared(step, smooth, settings).flip == Approx(slow.mean(step, smooth)).epsilon(5e-5));
+	CHECK(compared(rough, step, settings).flip == Approx(slow.mean(rough, step)).epsilon(5e-5));
 }
 
 TEST_CASE("measure: FLIP is symmetric, and a line counts for more than the same difference without one", "[compare]")

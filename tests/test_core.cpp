@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "temporary_folder.h"
 #include "testing.h"
 
 #include "core/decimal.h"
-#include "core/file.h"
 #include "core/isolate.h"
-#include "core/math.h"
 #include "core/parallel.h"
 #include "core/progress.h"
-#include "core/random.h"
 
 #include <sys/wait.h>
 
@@ -384,21 +380,19 @@ TEST_CASE("parallel: every item once, on any number of threads", "[core]")
 
 TEST_CASE("parallel: an item's exception arrives", "[core]")
 {
-	for (const int threads : {1, 2, 4})
+	const int threads = GENERATE(1, 2, 4);
+	const auto act = [&]
 	{
-		const auto act = [&]
-		{
-			parallelFor(100, threads,
-						[](std::size_t i)
+		parallelFor(100, threads,
+					[](std::size_t i)
+					{
+						if (i == 37)
 						{
-							if (i == 37)
-							{
-								throw Error(ExitCode::runtime, "37");
-							}
-						});
-		};
-		CHECK(codeOf(act) == ExitCode::runtime);
-	}
+							throw Error(ExitCode::runtime, "37");
+						}
+					});
+	};
+	CHECK(codeOf(act) == ExitCode::runtime);
 }
 
 TEST_CASE("progress: grows from zero to one, one call at a time", "[core]")

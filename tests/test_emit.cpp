@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit_samples.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/file.h"
 #include "core/image.h"
 #include "core/text.h"
 #include "format/arrays.h"
@@ -66,81 +64,71 @@ TEST_CASE("numbers: the shortest decimal of a 32-bit float reads back as the sam
 
 TEST_CASE("pattern JSON: what is read back is what was written, bit for bit", "[emit]")
 {
-	for (const Domain domain : kDomains)
+	const Domain domain = GENERATE(from_range(kDomains));
+	const int count = GENERATE(1, 2, 9, 64, 4096);
+	Pattern pattern = scatteredPattern(domain, count);
+	if (count == 9)
 	{
-		for (const int count : {1, 2, 9, 64, 4096})
+		Random random(5);
+		for (int i = 0; i < count; ++i)
 		{
-			Pattern pattern = scatteredPattern(domain, count);
-			if (count == 9)
-			{
-				Random random(5);
-				for (int i = 0; i < count; ++i)
-				{
-					pattern.powers.push_back(random.uniform() - 0.5);
-				}
-				pattern.points[0].x = -0.0;
-			}
-			if (count == 9 && isDirectional(domain))
-			{
-				pattern.points[0] = {-0.0, 0.6F, 0.8F};
-			}
-			const Recipe recipe = recipeOf(pattern);
-			const std::string text = patternJson(pattern, &recipe, awkwardQuality(), contextOf("nook pattern \"quoted\" \\ é"));
-			const PatternFile file = parsePatternJson(text, "p.json");
-			CHECK(sameBits(file.pattern, pattern));
-			CHECK(file.weights_given);
-			CHECK(file.command == "nook pattern \"quoted\" \\ é");
-			CHECK(file.version == "0.1.0");
-			REQUIRE(file.recipe.has_value());
-			CHECK(patternCommand(*file.recipe) == patternCommand(recipe));
-			REQUIRE(file.quality.has_value());
-			CHECK(file.quality->plane == 0.1 / 3.0);
-			CHECK(file.quality->noise == 1e-300);
-			CHECK(std::isinf(file.quality->energy));
-			CHECK(file.quality->cliff == awkwardQuality().cliff);
-			CHECK_FALSE(file.quality->crease.has_value());
-			CHECK(patternJson(file.pattern, &*file.recipe, *file.quality, contextOf(file.command)) == text);
+			pattern.powers.push_back(random.uniform() - 0.5);
 		}
+		pattern.points[0].x = -0.0;
 	}
+	if (count == 9 && isDirectional(domain))
+	{
+		pattern.points[0] = {-0.0, 0.6F, 0.8F};
+	}
+	const Recipe recipe = recipeOf(pattern);
+	const std::string text = patternJson(pattern, &recipe, awkwardQuality(), contextOf("nook pattern \"quoted\" \\ é"));
+	const PatternFile file = parsePatternJson(text, "p.json");
+	CHECK(sameBits(file.pattern, pattern));
+	CHECK(file.weights_given);
+	CHECK(file.command == "nook pattern \"quoted\" \\ é");
+	CHECK(file.version == "0.1.0");
+	REQUIRE(file.recipe.has_value());
+	CHECK(patternCommand(*file.recipe) == patternCommand(recipe));
+	REQUIRE(file.quality.has_value());
+	CHECK(file.quality->plane == 0.1 / 3.0);
+	CHECK(file.quality->noise == 1e-300);
+	CHECK(std::isinf(file.quality->energy));
+	CHECK(file.quality->cliff == awkwardQuality().cliff);
+	CHECK_FALSE(file.quality->crease.has_value());
+	CHECK(patternJson(file.pattern, &*file.recipe, *file.quality, contextOf(file.command)) == text);
 }
 
 TEST_CASE("pattern CSV: what is read back is what was written, bit for bit", "[emit]")
 {
-	for (const Domain domain : kDomains)
-	{
-		const Pattern pattern = scatteredPattern(domain, 33);
-		const PatternFile file = parsePatternCsv(patternCsv(pattern, awkwardQuality(), contextOf("nook pattern")), "p.csv");
-		CHECK(sameBits(file.pattern, pattern));
-		CHECK(file.weights_given);
-	}
+	const Domain domain = GENERATE(from_range(kDomains));
+	const Pattern pattern = scatteredPattern(domain, 33);
+	const PatternFile file = parsePatternCsv(patternCsv(pattern, awkwardQuality(), contextOf("nook pattern")), "p.csv");
+	CHECK(sameBits(file.pattern, pattern));
+	CHECK(file.weights_given);
 }
 
 TEST_CASE("tile JSON: what is read back is what was written, bit for bit", "[emit]")
 {
-	for (const Domain domain : {Domain::disk, Domain::ball, Domain::hemisphere})
+	const Domain domain = GENERATE(Domain::disk, Domain::ball, Domain::hemisphere);
+	const bool transforms = GENERATE(false, true);
+	const PatternTile tile = scatteredTile(domain, 3, 5, transforms);
+	TileRecipe recipe{.size = 3, .kind = transforms ? TileKind::random : TileKind::points};
+	EmitContext context = contextOf("nook tile --pattern p.json --size 3");
+	context.base_command = "nook pattern --domain disk --count 5";
+	TileQuality quality;
+	quality.window = 0.1;
+	const std::string text = tileJson(tile, &recipe, quality, context);
+	const TileFile file = parseTileJson(text, "t.json");
+	CHECK(file.tile.size == 3);
+	REQUIRE(file.tile.variants.size() == 9);
+	for (std::size_t i = 0; i < 9; ++i)
 	{
-		for (const bool transforms : {false, true})
-		{
-			const PatternTile tile = scatteredTile(domain, 3, 5, transforms);
-			TileRecipe recipe{.size = 3, .kind = transforms ? TileKind::random : TileKind::points};
-			EmitContext context = contextOf("nook tile --pattern p.json --size 3");
-			context.base_command = "nook pattern --domain disk --count 5";
-			TileQuality quality;
-			quality.window = 0.1;
-			const std::string text = tileJson(tile, &recipe, quality, context);
-			const TileFile file = parseTileJson(text, "t.json");
-			CHECK(file.tile.size == 3);
-			REQUIRE(file.tile.variants.size() == 9);
-			for (std::size_t i = 0; i < 9; ++i)
-			{
-				CHECK(sameBits(file.tile.variants[i], tile.variants[i]));
-			}
-			CHECK(file.base_command == context.base_command);
-			REQUIRE(file.recipe.has_value());
-			REQUIRE(file.quality.has_value());
-			CHECK(tileJson(file.tile, &*file.recipe, *file.quality, context) == text);
-		}
+		CHECK(sameBits(file.tile.variants[i], tile.variants[i]));
 	}
+	CHECK(file.base_command == context.base_command);
+	REQUIRE(file.recipe.has_value());
+	REQUIRE(file.quality.has_value());
+	CHECK(tileJson(file.tile, &*file.recipe, *file.quality, context) == text);
 }
 
 TEST_CASE("every file: begins with the command, the version, the measures and the licence", "[emit]")
@@ -180,56 +168,52 @@ TEST_CASE("every file: two emissions are equal bytes without a date", "[emit]")
 		}
 	}
 	const PatternTile tile = scatteredTile(Domain::disk, 4, 5, true);
-	for (const std::string_view format : tileFormats())
-	{
-		const std::string bytes = tileBytes(format, tile, nullptr, {}, contextOf("nook"));
-		CHECK(bytes == tileBytes(format, tile, nullptr, {}, contextOf("nook")));
-		CHECK(bytes.find("tIME") == std::string::npos);
-		CHECK(bytes.find("OpenImageIO") == std::string::npos);
-		const std::size_t date = bytes.find("capDate"); // OpenEXR requires the attribute; it is empty
-		CHECK((date == std::string::npos || bytes.substr(date + 15, 4) == std::string(4, '\0')));
-	}
+	const std::string_view format = GENERATE(from_range(tileFormats()));
+	const std::string bytes = tileBytes(format, tile, nullptr, {}, contextOf("nook"));
+	CHECK(bytes == tileBytes(format, tile, nullptr, {}, contextOf("nook")));
+	CHECK(bytes.find("tIME") == std::string::npos);
+	CHECK(bytes.find("OpenImageIO") == std::string::npos);
+	const std::size_t date = bytes.find("capDate"); // OpenEXR requires the attribute; it is empty
+	CHECK((date == std::string::npos || bytes.substr(date + 15, 4) == std::string(4, '\0')));
 }
 
 TEST_CASE("textures: EXR holds the floats, PNG stays within its stated error", "[emit]")
 {
-	for (const bool transforms : {false, true})
+	const bool transforms = GENERATE(false, true);
+	const PatternTile tile = scatteredTile(Domain::disk, 4, 5, transforms);
+	const TileTexture texture = textureOf(tile);
+	CHECK(texture.width_px == (transforms ? 4 : 16));
+	CHECK(texture.height_px == (transforms ? 4 : 5));
+	if (transforms)
 	{
-		const PatternTile tile = scatteredTile(Domain::disk, 4, 5, transforms);
-		const TileTexture texture = textureOf(tile);
-		CHECK(texture.width_px == (transforms ? 4 : 16));
-		CHECK(texture.height_px == (transforms ? 4 : 5));
-		if (transforms)
+		const std::size_t at = 4 * (2 * 4 + 1); // row 2, column 1: variant 9
+		CHECK(texture.rgba[at] == static_cast<float>(tile.transforms[9].cos));
+		CHECK(texture.rgba[at + 3] == static_cast<float>(tile.transforms[9].handedness));
+	}
+	else
+	{
+		const std::size_t at = 4 * (3 * 16 + 9); // sample 3 of variant 9
+		CHECK(texture.rgba[at] == static_cast<float>(tile.variants[9].points[3].x));
+		CHECK(texture.rgba[at + 3] == static_cast<float>(tile.variants[9].weights[3]));
+	}
+	const TemporaryFolder folder;
+	for (const char* name : {"t.exr", "t.png"})
+	{
+		emitTile(folder / name, tile, contextOf("nook tile"));
+		const Image image = readImage(folder / name);
+		const bool exr = std::string(name) == "t.exr";
+		REQUIRE(image.values.size() == texture.rgba.size());
+		if (exr)
 		{
-			const std::size_t at = 4 * (2 * 4 + 1); // row 2, column 1: variant 9
-			CHECK(texture.rgba[at] == static_cast<float>(tile.transforms[9].cos));
-			CHECK(texture.rgba[at + 3] == static_cast<float>(tile.transforms[9].handedness));
+			CHECK(image.halves == std::vector<uint8_t>(4, 0));
 		}
-		else
+		for (std::size_t i = 0; i < image.values.size(); ++i)
 		{
-			const std::size_t at = 4 * (3 * 16 + 9); // sample 3 of variant 9
-			CHECK(texture.rgba[at] == static_cast<float>(tile.variants[9].points[3].x));
-			CHECK(texture.rgba[at + 3] == static_cast<float>(tile.variants[9].weights[3]));
-		}
-		const TemporaryFolder folder;
-		for (const char* name : {"t.exr", "t.png"})
-		{
-			emitTile(folder / name, tile, contextOf("nook tile"));
-			const Image image = readImage(folder / name);
-			const bool exr = std::string(name) == "t.exr";
-			REQUIRE(image.values.size() == texture.rgba.size());
-			if (exr)
-			{
-				CHECK(image.halves == std::vector<uint8_t>(4, 0));
-			}
-			for (std::size_t i = 0; i < image.values.size(); ++i)
-			{
-				const double range = double{texture.range[i % 4]};
-				const double stored = double{image.values[i]} * 65535.0; // 16 bits of a PNG
-				const double value = exr ? double{image.values[i]} : (std::round(stored) - 32768.0) / 32767.0 * range;
-				CHECK((exr || std::fabs(stored - std::round(stored)) < 0.01));
-				CHECK(std::fabs(value - double{texture.rgba[i]}) <= (exr ? 0.0 : range / 65534.0 * 1.0000001));
-			}
+			const double range = double{texture.range[i % 4]};
+			const double stored = double{image.values[i]} * 65535.0; // 16 bits of a PNG
+			const double value = exr ? double{image.values[i]} : (std::round(stored) - 32768.0) / 32767.0 * range;
+			CHECK((exr || std::fabs(stored - std::round(stored)) < 0.01));
+			CHECK(std::fabs(value - double{texture.rgba[i]}) <= (exr ? 0.0 : range / 65534.0 * 1.0000001));
 		}
 	}
 }
@@ -329,10 +313,8 @@ TEST_CASE("formats: the ending decides, and what is unknown is refused before an
 	CHECK(formatOf("/dev/full", patternFormats()) == ".json");
 	CHECK(formatOf("t.exr", tileFormats()) == ".exr");
 	CHECK(formatOf("t.ktx2", tileFormats()) == ".ktx2");
-	for (const char* path : {"p.exr", "p.ktx2", "p", "p.JSON", "p.txt", "", ".json", "dir.h/p", "p.h."})
-	{
-		CHECK_FALSE(refusalBy([&] { formatOf(path, patternFormats()); }, ExitCode::usage).empty());
-	}
+	const char* const path = GENERATE(as<const char*>{}, "p.exr", "p.ktx2", "p", "p.JSON", "p.txt", "", ".json", "dir.h/p", "p.h.");
+	CHECK_FALSE(refusalBy([&] { formatOf(path, patternFormats()); }, ExitCode::usage).empty());
 }
 
 TEST_CASE("writing: a failure leaves no file behind", "[emit]")

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The report on time and error: front, cache, baseline, JSON, page.
 #include "small_levels.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
 #include "core/base64.h"
 #include "core/content_hash.h"
-#include "core/file.h"
-#include "core/random.h"
 #include "core/work_units.h"
 #include "shade/gl_context.h"
 #include "study/error_report.h"
@@ -107,6 +104,22 @@ Candidate lines(int count)
 	candidate.source = SampleSource::refined;
 	candidate.count = count;
 	candidate.shade.filter = ShadeFilter::bilateral;
+	return candidate;
+}
+
+MeasureSettings onCpu(int repetitions)
+{
+	MeasureSettings settings;
+	settings.device = Device::cpu;
+	settings.repetitions = repetitions;
+	return settings;
+}
+
+Candidate assetOf(std::string_view name)
+{
+	Candidate candidate;
+	candidate.kind = CandidateKind::asset;
+	candidate.asset = assetNamed(name);
 	return candidate;
 }
 
@@ -543,9 +556,7 @@ TEST_CASE("error report: more rays err less, and the reference says how far it m
 {
 	LevelBench level(boxOnFloor(), 1.0, {});
 	ViewBench view(level, level.level.cameras.front(), {32, 18, 512, 1}, {});
-	MeasureSettings settings;
-	settings.device = Device::cpu;
-	settings.repetitions = 2;
+	const MeasureSettings settings = onCpu(2);
 	const Measurement few = view.measure(rays(4), settings);
 	const Measurement many = view.measure(rays(256), settings);
 	CHECK(many.errors.rmse < 0.5 * few.errors.rmse);
@@ -562,9 +573,7 @@ TEST_CASE("error report: a method's definition is what it draws without noise, a
 {
 	LevelBench level(boxOnFloor(), 1.0, {});
 	ViewBench view(level, level.level.cameras.front(), {32, 18, 256, 1}, {});
-	MeasureSettings settings;
-	settings.device = Device::cpu;
-	settings.repetitions = 1;
+	const MeasureSettings settings = onCpu(1);
 	const Measurement measured = view.measure(lines(5), settings);
 	REQUIRE(measured.own_rmse);
 	CHECK(*measured.own_rmse > 0.0);
@@ -579,12 +588,8 @@ TEST_CASE("error report: volumes of a level are measured as its other methods ar
 {
 	LevelBench level(boxOnFloor(), 1.0, {});
 	ViewBench view(level, level.level.cameras.front(), {32, 18, 512, 1}, {});
-	MeasureSettings settings;
-	settings.device = Device::cpu;
-	settings.repetitions = 1;
-	Candidate volumes;
-	volumes.kind = CandidateKind::asset;
-	volumes.asset = assetNamed("aov");
+	const MeasureSettings settings = onCpu(1);
+	Candidate volumes = assetOf("aov");
 	const Measurement built = view.measure(volumes, settings);
 	volumes.volumes = VolumeRecipe::triangles;
 	const Measurement triangles = view.measure(volumes, settings);
@@ -621,12 +626,8 @@ TEST_CASE("error report: bakes and volumes say their bytes, and splitting triang
 {
 	LevelBench bench(boxOnFloor(), 0.5, {});
 	ViewBench view(bench, bench.level.cameras.front(), {64, 36, 64, 1}, {});
-	MeasureSettings how;
-	how.device = Device::cpu;
-	how.repetitions = 1;
-	Candidate bake;
-	bake.kind = CandidateKind::asset;
-	bake.asset = assetNamed("bake");
+	const MeasureSettings how = onCpu(1);
+	Candidate bake = assetOf("bake");
 	CHECK(bake.name() == "bake");
 	const Measurement coarse = view.measure(bake, how);
 	CHECK(coarse.bytes == 4 * bench.level.positions.size());
@@ -636,9 +637,7 @@ TEST_CASE("error report: bakes and volumes say their bytes, and splitting triang
 	const Measurement fine = view.measure(bake, how);
 	CHECK(fine.bytes > coarse.bytes);
 	CHECK(fine.errors.rmse < coarse.errors.rmse);
-	Candidate volumes;
-	volumes.kind = CandidateKind::asset;
-	volumes.asset = assetNamed("aov");
+	Candidate volumes = assetOf("aov");
 	CHECK(view.measure(volumes, how).bytes > 100);
 	CHECK(view.flicker(bake, how, 2) >= 0.0);
 }

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "small_gbuffers.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/file.h"
 #include "methods/block.h"
 #include "scene/gbuffer.h"
 #include "shade/shade.h"
@@ -169,34 +167,32 @@ TEST_CASE("scene: depth is found under the names that programs give it", "[gbuff
 
 TEST_CASE("scene: device depth of any projection becomes metres", "[gbuffer]")
 {
-	for (const NamedProjection& projection : projections(4.0 / 3.0))
+	const NamedProjection projection = GENERATE(from_range(projections(4.0 / 3.0)));
+	INFO(projection.name);
+	const GBuffer truth = made(8, 6, projection.matrix, plane(glm::normalize(glm::dvec3(0.1, 0.4, 1.0)), -4.0));
+	const Projector projector(projection.matrix, 8, 6);
+	std::vector<float> device;
+	for (std::size_t i = 0; i < truth.depth.size(); ++i)
 	{
-		INFO(projection.name);
-		const GBuffer truth = made(8, 6, projection.matrix, plane(glm::normalize(glm::dvec3(0.1, 0.4, 1.0)), -4.0));
-		const Projector projector(projection.matrix, 8, 6);
-		std::vector<float> device;
-		for (std::size_t i = 0; i < truth.depth.size(); ++i)
+		const ViewLine line = projector.lineOf({static_cast<double>(i % 8) + 0.5, static_cast<double>(i / 8) + 0.5});
+		const glm::dvec4 clip = projection.matrix * glm::dvec4(line.at + static_cast<double>(truth.depth[i]) * line.along, 1.0);
+		const double z = clip.z / clip.w;
+		device.push_back(static_cast<float>(projection.clip == ClipRange::zero_to_one ? z : 0.5 * z + 0.5));
+	}
+	const bool reversed = std::string(projection.name).find("reversed") == 0;
+	device[3] = reversed ? 0.0F : 1.0F; // clear value
+	GBufferImport import = fromDepth();
+	import.depth = DepthKind::device;
+	import.clip = projection.clip;
+	import.projection = projection.matrix;
+	const GBuffer read = readBack(foreign(8, 6, {"Z"}, device), import);
+	CHECK(read.depth[3] == kSky);
+	for (std::size_t i = 0; i < read.depth.size(); ++i)
+	{
+		if (i != 3)
 		{
-			const ViewLine line = projector.lineOf({static_cast<double>(i % 8) + 0.5, static_cast<double>(i / 8) + 0.5});
-			const glm::dvec4 clip = projection.matrix * glm::dvec4(line.at + static_cast<double>(truth.depth[i]) * line.along, 1.0);
-			const double z = clip.z / clip.w;
-			device.push_back(static_cast<float>(projection.clip == ClipRange::zero_to_one ? z : 0.5 * z + 0.5));
-		}
-		const bool reversed = std::string(projection.name).find("reversed") == 0;
-		device[3] = reversed ? 0.0F : 1.0F; // clear value
-		GBufferImport import = fromDepth();
-		import.depth = DepthKind::device;
-		import.clip = projection.clip;
-		import.projection = projection.matrix;
-		const GBuffer read = readBack(foreign(8, 6, {"Z"}, device), import);
-		CHECK(read.depth[3] == kSky);
-		for (std::size_t i = 0; i < read.depth.size(); ++i)
-		{
-			if (i != 3)
-			{
-				// 32 bits of device depth near 1 are 0.1 mm at 4 m with a near plane at 0.1 m.
-				CHECK(read.depth[i] == Approx(truth.depth[i]).epsilon(1e-4));
-			}
+			// 32 bits of device depth near 1 are 0.1 mm at 4 m with a near plane at 0.1 m.
+			CHECK(read.depth[i] == Approx(truth.depth[i]).epsilon(1e-4));
 		}
 	}
 }
@@ -384,26 +380,20 @@ TEST_CASE("scene: surfaces of a G-buffer as a mask", "[gbuffer]")
 
 TEST_CASE("scene: normals from the depth of a plane are the plane's", "[gbuffer]")
 {
-	for (const NamedProjection& projection : projections(1.5))
-	{
-		for (const double tilt_deg : {0.0, 30.0, 60.0, 80.0})
-		{
-			for (const double turn_deg : {0.0, 50.0, 170.0, 290.0})
-			{
-				INFO(projection.name << ", " << tilt_deg << ", " << turn_deg);
-				const double tilt = tilt_deg * 0.0174532925199433;
-				const double turn = turn_deg * 0.0174532925199433;
-				const glm::dvec3 normal(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt));
-				// At 5 m on the axis; further away for parallel rays, which would otherwise meet a plane of 80° behind the camera.
-				const double offset = -5.0 * normal.z * (projection.matrix[3][3] == 1.0 ? 10.0 : 1.0);
-				GBuffer gbuffer = made(48, 32, projection.matrix, plane(normal, offset));
-				normalsFromDepth(gbuffer);
-				const double worst = worstError(gbuffer, normal);
-				CHECK(worst >= 0.0);
-				CHECK(worst < 5e-4);
-			}
-		}
-	}
+	const NamedProjection projection = GENERATE(from_range(projections(1.5)));
+	const double tilt_deg = GENERATE(0.0, 30.0, 60.0, 80.0);
+	const double turn_deg = GENERATE(0.0, 50.0, 170.0, 290.0);
+	INFO(projection.name << ", " << tilt_deg << ", " << turn_deg);
+	const double tilt = tilt_deg * 0.0174532925199433;
+	const double turn = turn_deg * 0.0174532925199433;
+	const glm::dvec3 normal(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt));
+	// At 5 m on the axis; further away for parallel rays, which would otherwise meet a plane of 80° behind the camera.
+	const double offset = -5.0 * normal.z * (projection.matrix[3][3] == 1.0 ? 10.0 : 1.0);
+	GBuffer gbuffer = made(48, 32, projection.matrix, plane(normal, offset));
+	normalsFromDepth(gbuffer);
+	const double worst = worstError(gbuffer, normal);
+	CHECK(worst >= 0.0);
+	CHECK(worst < 5e-4);
 }
 
 TEST_CASE("scene: normals from depth are right on both sides of an edge", "[gbuffer]")
@@ -509,30 +499,28 @@ TEST_CASE("scene: normals from depth are the same on any number of threads, and 
 
 TEST_CASE("scene: the kernel's normals from depth are those of the file's", "[gbuffer]")
 {
-	for (const NamedProjection& projection : projections(1.5))
+	const NamedProjection projection = GENERATE(from_range(projections(1.5)));
+	INFO(projection.name);
+	GBuffer gbuffer = made(48, 32, projection.matrix,
+						   [](int x, int y, const ViewLine&)
+						   {
+							   return x > 40
+										  ? std::numeric_limits<double>::infinity()
+										  : 3.0 + std::sin(0.4 * x) * std::cos(0.3 * y) + (x % 7 == 0 ? 2.0 : 0.0) + 0.01 * x * y;
+						   });
+	normalsFromDepth(gbuffer);
+	const std::vector<float> depths = finiteDepths(gbuffer);
+	shade_kernels::Kernels kernels;
+	fillCamera(kernels.nook, gbuffer.view.projection, 48, 32);
+	kernels.depths = depths;
+	int off = 0;
+	for (int i = 0; i < 48 * 32; ++i)
 	{
-		INFO(projection.name);
-		GBuffer gbuffer =
-			made(48, 32, projection.matrix,
-				 [](int x, int y, const ViewLine&)
-				 {
-					 return x > 40 ? std::numeric_limits<double>::infinity()
-								   : 3.0 + std::sin(0.4 * x) * std::cos(0.3 * y) + (x % 7 == 0 ? 2.0 : 0.0) + 0.01 * x * y;
-				 });
-		normalsFromDepth(gbuffer);
-		const std::vector<float> depths = finiteDepths(gbuffer);
-		shade_kernels::Kernels kernels;
-		fillCamera(kernels.nook, gbuffer.view.projection, 48, 32);
-		kernels.depths = depths;
-		int off = 0;
-		for (int i = 0; i < 48 * 32; ++i)
+		const auto at = static_cast<std::size_t>(i);
+		if (std::isfinite(gbuffer.depth[at]))
 		{
-			const auto at = static_cast<std::size_t>(i);
-			if (std::isfinite(gbuffer.depth[at]))
-			{
-				off += glm::length(kernels.nookNormalFromDepth({i % 48, i / 48}) - gbuffer.normals[at]) > 1e-3F ? 1 : 0;
-			}
+			off += glm::length(kernels.nookNormalFromDepth({i % 48, i / 48}) - gbuffer.normals[at]) > 1e-3F ? 1 : 0;
 		}
-		CHECK(off <= 2); // both sides continue equally badly
 	}
+	CHECK(off <= 2); // both sides continue equally badly
 }

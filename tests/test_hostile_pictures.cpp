@@ -2,7 +2,6 @@
 // Picture files with large demands: a picture, or one error, within bounded time.
 #include "hostile_pictures.h"
 #include "level_files.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
 #include "core/image_codec.h"
@@ -59,21 +58,6 @@ std::string withChunk(const std::string& png, const std::string& type, const std
 	std::string chunk;
 	appendPngChunk(chunk, type, content);
 	return png.substr(0, kHeader) + chunk + png.substr(kHeader);
-}
-
-// A PNG of zeros with `channels` values of `bits` bits per pixel.
-std::string zerosPng(uint32_t width_px, uint32_t height_px, char bits, char colour_type, uint32_t channels)
-{
-	std::string head;
-	appendBigEndian(head, width_px);
-	appendBigEndian(head, height_px);
-	head += {bits, colour_type, 0, 0, 0};
-	std::string png = "\x89PNG\r\n\x1A\n";
-	appendPngChunk(png, "IHDR", head);
-	appendPngChunk(png, "IDAT",
-				   zlibZeros(uint64_t{height_px} * (1 + uint64_t{width_px} * channels * static_cast<uint64_t>(bits / 8))));
-	appendPngChunk(png, "IEND", "");
-	return png;
 }
 
 // Without the chunks that pngBytes() adds.

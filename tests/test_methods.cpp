@@ -2,7 +2,6 @@
 // The tables of methods and features: consistency of rows, round trips of setters, words and commands.
 #include "testing.h"
 
-#include "core/decimal.h"
 #include "methods/feature_table.h"
 #include "methods/method_table.h"
 
@@ -64,18 +63,16 @@ TEST_CASE("methods: a row each, in the order of their numbers, with kernel, samp
 
 TEST_CASE("methods: the count of a candidate is the number of samples that are drawn", "[methods]")
 {
-	for (const MethodRow& row : methodTable())
+	const MethodRow row = GENERATE(from_range(methodTable()));
+	if (row.set_count != nullptr)
 	{
-		if (row.set_count != nullptr)
-		{
-			ShadeSettings settings;
-			settings.method = row.method;
-			row.set_count(settings, 2);
-			const bool layers = row.layers_text != nullptr;
-			CHECK((layers ? settings.statvo.layers : ownSamples(settings).count) == 2);
-			const int best = row.set_best(settings);
-			CHECK((layers ? settings.statvo.layers : ownSamples(settings).count) == best);
-		}
+		ShadeSettings settings;
+		settings.method = row.method;
+		row.set_count(settings, 2);
+		const bool layers = row.layers_text != nullptr;
+		CHECK((layers ? settings.statvo.layers : ownSamples(settings).count) == 2);
+		const int best = row.set_best(settings);
+		CHECK((layers ? settings.statvo.layers : ownSamples(settings).count) == best);
 	}
 }
 
@@ -118,24 +115,21 @@ TEST_CASE("features: what is set is got, and nothing else changes", "[methods]")
 
 TEST_CASE("features: each goes with a method, says its default in its help, and names options that are there", "[methods]")
 {
-	for (const FeatureRow& feature : featureTable())
+	const FeatureRow feature = GENERATE(from_range(featureTable()));
+	INFO(feature.option);
+	CHECK_FALSE(methodNames([&](const MethodRow& row) { return takesFeature(row, feature); }).empty());
+	for (const std::string_view other : {feature.needs, feature.base, feature.conflict})
 	{
-		INFO(feature.option);
-		CHECK_FALSE(methodNames([&](const MethodRow& row) { return takesFeature(row, feature); }).empty());
-		for (const std::string_view other : {feature.needs, feature.base, feature.conflict})
-		{
-			CHECK((other.empty() || featureOf(other).option == other));
-		}
-		if (feature.kind == FeatureKind::whole || feature.kind == FeatureKind::number)
-		{
-			const double value = feature.value.get(ShadeSettings{});
-			const bool none = value == 0.0 && !feature.nothing.empty();
-			CHECK((none || (value >= feature.least && value <= feature.most)));
-			const bool says =
-				feature.help.find("default") != std::string_view::npos &&
-				feature.help.find(none ? std::string(feature.nothing) : defaultText(feature)) != std::string_view::npos;
-			CHECK((says || !feature.needs.empty()));
-		}
+		CHECK((other.empty() || featureOf(other).option == other));
+	}
+	if (feature.kind == FeatureKind::whole || feature.kind == FeatureKind::number)
+	{
+		const double value = feature.value.get(ShadeSettings{});
+		const bool none = value == 0.0 && !feature.nothing.empty();
+		CHECK((none || (value >= feature.least && value <= feature.most)));
+		const bool says = feature.help.find("default") != std::string_view::npos &&
+						  feature.help.find(none ? std::string(feature.nothing) : defaultText(feature)) != std::string_view::npos;
+		CHECK((says || !feature.needs.empty()));
 	}
 }
 

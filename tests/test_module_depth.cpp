@@ -5,10 +5,8 @@
 #include "nook_vo9.h"
 #include "other_tools.h"
 #include "small_formats.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/file.h"
 #include "emit/module.h"
 #include "shade/gl_context.h"
 #include "shade/shade.h"

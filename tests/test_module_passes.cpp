@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Emitted modules with several passes: an engine that follows their list of passes draws what nook shade draws on the CPU.
-#include "other_tools.h"
 #include "picture_errors.h"
 #include "small_modules.h"
 #include "small_views.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/file.h"
-#include "emit/module.h"
-#include "methods/block.h"
-#include "methods/method_table.h"
-#include "methods/passes.h"
 #include "pattern/recipe.h"
 #include "shade/gl_context.h"
 #include "shade/shade.h"
@@ -135,6 +128,19 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 	return last.shape.format == PictureFormat::quad ? readFloats(last) : readFloats(last);
 }
 
+// With row 0 at the bottom, turned back.
+std::vector<float> drawnTurned(const GBuffer& gbuffer, const ModuleSettings& settings)
+{
+	std::vector<float> picture = drawn(turned(gbuffer), settings, -1);
+	const int width = gbuffer.width_px;
+	const int last = gbuffer.height_px - 1;
+	for (int y = 0; y < last - y; ++y)
+	{
+		std::swap_ranges(picture.begin() + y * width, picture.begin() + (y + 1) * width, picture.begin() + (last - y) * width);
+	}
+	return picture;
+}
+
 // The depth reads stated in a module's introduction, by call.
 int statedReads(const std::string& module, const std::string& call)
 {
@@ -206,39 +212,37 @@ TEST_CASE("module: its head states the depth reads of each pass", "[emit]")
 TEST_CASE("module: bent normals drawn as the module's head says are those of nook shade", "[emit]")
 {
 	const GBuffer gbuffer = builtinView("courtyard", 128, 72);
-	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
+	const GlslTarget target = GENERATE(GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300);
+	const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
+	for (const ShadeFilter filter : {ShadeFilter::none, ShadeFilter::bilateral})
 	{
-		const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
-		for (const ShadeFilter filter : {ShadeFilter::none, ShadeFilter::bilateral})
+		for (const bool tiled : {false, true})
 		{
-			for (const bool tiled : {false, true})
+			ModuleSettings settings;
+			settings.target = target;
+			settings.shade.method = ShadeMethod::slices;
+			settings.shade.radius_m = 0.8;
+			settings.shade.slices.bent = true;
+			settings.shade.slices.steps = 4;
+			settings.shade.filter = filter;
+			settings.methods = {{ShadeMethod::slices, {}}};
+			if (tiled)
 			{
-				ModuleSettings settings;
-				settings.target = target;
-				settings.shade.method = ShadeMethod::slices;
-				settings.shade.radius_m = 0.8;
-				settings.shade.slices.bent = true;
-				settings.shade.slices.steps = 4;
-				settings.shade.filter = filter;
-				settings.methods = {{ShadeMethod::slices, {}}};
-				if (tiled)
+				settings.methods.front().variants = {4, slicePattern(1)};
+				for (std::size_t i = 0; i < 4; ++i)
 				{
-					settings.methods.front().variants = {4, slicePattern(1)};
-					for (std::size_t i = 0; i < 4; ++i)
-					{
-						settings.methods.front().variants[i].points[0] = {(static_cast<double>(i) + 0.5) / 4.0, 0.2, 0.0};
-					}
+					settings.methods.front().variants[i].points[0] = {(static_cast<double>(i) + 0.5) / 4.0, 0.2, 0.0};
 				}
-				const Shaded cpu = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}});
-				const std::vector<float> gl = drawn(gbuffer, settings);
-				std::vector<float> expected;
-				for (std::size_t i = 0; i < cpu.bent.size(); ++i)
-				{
-					expected.insert(expected.end(), {cpu.bent[i].x, cpu.bent[i].y, cpu.bent[i].z, cpu.visibility[i]});
-				}
-				CAPTURE(static_cast<int>(target), static_cast<int>(filter), tiled, context.renderer());
-				checkSamePicture(expected, gl);
 			}
+			const Shaded cpu = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}});
+			const std::vector<float> gl = drawn(gbuffer, settings);
+			std::vector<float> expected;
+			for (std::size_t i = 0; i < cpu.bent.size(); ++i)
+			{
+				expected.insert(expected.end(), {cpu.bent[i].x, cpu.bent[i].y, cpu.bent[i].z, cpu.visibility[i]});
+			}
+			CAPTURE(static_cast<int>(target), static_cast<int>(filter), tiled, context.renderer());
+			checkSamePicture(expected, gl);
 		}
 	}
 }
@@ -266,24 +270,23 @@ TEST_CASE("module: nothing of bent normals is in it without --bent, and its code
 TEST_CASE("module: passes drawn as the module's head says and whole shaders make the picture of nook shade", "[emit]")
 {
 	const GBuffer gbuffer = builtinView("courtyard", 128, 72);
-	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
+	const GlslTarget target = GENERATE(GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300);
+	const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
+	for (const PassCase& one : passCases())
 	{
-		const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
-		for (const PassCase& one : passCases())
-		{
-			ModuleSettings settings = moduleOf(one, target);
-			const std::vector<float> cpu = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility;
-			const std::vector<float> gl = drawn(gbuffer, settings);
-			CAPTURE(one.name, static_cast<int>(target), context.renderer());
-			checkSamePicture(cpu, gl);
-			ModuleSettings whole = settings;
-			whole.main = ModuleMain::fragment;
-			whole.textures = target == GlslTarget::gl430 ? ModuleTextures::macros : ModuleTextures::fixed;
-			checkSamePicture(cpu, drawn(gbuffer, whole));
-			settings.float_block = true; // the same to the bit
-			CHECK(drawn(gbuffer, settings) == gl);
-			CHECK(moduleGlsl(settings, contextOf("nook emit")).find("\tivec2 first;") == std::string::npos);
-		}
+		ModuleSettings settings = moduleOf(one, target);
+		const std::vector<float> cpu = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility;
+		const std::vector<float> gl = drawn(gbuffer, settings);
+		CAPTURE(one.name, static_cast<int>(target), context.renderer());
+		checkSamePicture(cpu, gl);
+		ModuleSettings whole = settings;
+		whole.main = ModuleMain::fragment;
+		whole.tile = TilePlace::array;
+		whole.textures = target == GlslTarget::gl430 ? ModuleTextures::macros : ModuleTextures::fixed;
+		checkSamePicture(cpu, drawn(gbuffer, whole));
+		settings.float_block = true; // the same to the bit
+		CHECK(drawn(gbuffer, settings) == gl);
+		CHECK(moduleGlsl(settings, contextOf("nook emit")).find("\tivec2 first;") == std::string::npos);
 	}
 }
 
@@ -298,10 +301,7 @@ TEST_CASE("module: a compute shader's bindings are where its text puts them", "[
 	}
 	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy, ShadeMethod::slices})
 	{
-		PassCase one{"", {}};
-		one.shade.method = method;
-		one.shade.radius_m = 0.8;
-		ModuleSettings settings = moduleOf(one, GlslTarget::gl430);
+		ModuleSettings settings = moduleOf(method, ShadeFilter::none, GlslTarget::gl430);
 		settings.main = ModuleMain::compute;
 		settings.tile = TilePlace::array;
 		const std::string text = withDefinitions(moduleGlsl(settings, contextOf("nook emit")), "#define NOOK_OUT_FORMAT r32f\n");
@@ -344,29 +344,16 @@ TEST_CASE("module: a compute shader's bindings are where its text puts them", "[
 
 TEST_CASE("module: with row 0 at the bottom the picture is that of nook shade, turned", "[emit]")
 {
-	const int width = 128;
-	const int height = 75; // not a multiple of the window
-	const GBuffer gbuffer = builtinView("courtyard", width, height);
+	const GBuffer gbuffer = builtinView("courtyard", 128, 75); // not a multiple of the window
 	const GlContext context;
 	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy, ShadeMethod::slices})
 	{
 		for (const ShadeFilter filter : {ShadeFilter::none, ShadeFilter::window, ShadeFilter::bilateral})
 		{
-			PassCase one{"", {}};
-			one.shade.method = method;
-			one.shade.radius_m = 0.8;
-			one.shade.filter = filter;
-			const ModuleSettings settings = moduleOf(one, GlslTarget::gl330);
+			const ModuleSettings settings = moduleOf(method, filter, GlslTarget::gl330);
 			const std::vector<float> above = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility;
-			const std::vector<float> below = drawn(turned(gbuffer), settings, -1);
-			std::vector<float> same;
-			for (int y = 0; y < height; ++y)
-			{
-				const auto row = below.begin() + (height - 1 - y) * width;
-				same.insert(same.end(), row, row + width);
-			}
 			CAPTURE(static_cast<int>(method), static_cast<int>(filter), context.renderer());
-			checkSamePicture(above, same);
+			checkSamePicture(above, drawnTurned(gbuffer, settings));
 		}
 	}
 }
@@ -440,24 +427,22 @@ TEST_CASE("module: slices of a tile over frames draw those of nook shade", "[emi
 	const GBuffer gbuffer = builtinView("courtyard", 96, 54);
 	TileRecipe recipe{.filters = {tileFilterNamed("bilateral:5")}, .frames = 4};
 	const PatternTile tile = generateTile(slicePattern(2), recipe, RunSettings{2, {}});
-	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
+	const GlslTarget target = GENERATE(GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300);
+	const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
+	for (const int frame : {0, 3})
 	{
-		const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
-		for (const int frame : {0, 3})
-		{
-			ModuleSettings settings;
-			settings.target = target;
-			settings.shade.method = ShadeMethod::slices;
-			settings.shade.radius_m = 0.8;
-			settings.shade.filter = ShadeFilter::bilateral;
-			settings.tile = frame == 3 ? TilePlace::array : TilePlace::texture;
-			settings.methods = {{ShadeMethod::slices, tile.variants}};
-			settings.methods.front().frames = tile.frames;
-			ShadeSamples samples = samplesFor(settings);
-			samples.variant = variantOfFrame(tile, frame);
-			CAPTURE(frame, static_cast<int>(target), context.renderer());
-			checkSamePicture(shadeOnCpu(gbuffer, samples, settings.shade, {2, {}}).visibility, drawn(gbuffer, settings, 1, frame));
-		}
+		ModuleSettings settings;
+		settings.target = target;
+		settings.shade.method = ShadeMethod::slices;
+		settings.shade.radius_m = 0.8;
+		settings.shade.filter = ShadeFilter::bilateral;
+		settings.tile = frame == 3 ? TilePlace::array : TilePlace::texture;
+		settings.methods = {{ShadeMethod::slices, tile.variants}};
+		settings.methods.front().frames = tile.frames;
+		ShadeSamples samples = samplesFor(settings);
+		samples.variant = variantOfFrame(tile, frame);
+		CAPTURE(frame, static_cast<int>(target), context.renderer());
+		checkSamePicture(shadeOnCpu(gbuffer, samples, settings.shade, {2, {}}).visibility, drawn(gbuffer, settings, 1, frame));
 	}
 }
 
@@ -473,22 +458,13 @@ TEST_CASE("module: normals from depth draw the picture of nook shade --normals f
 	{
 		for (const ShadeFilter filter : {ShadeFilter::none, ShadeFilter::window, ShadeFilter::bilateral})
 		{
-			PassCase one{"", {}};
-			one.shade.method = method;
-			one.shade.radius_m = 0.8;
-			one.shade.filter = filter;
-			ModuleSettings settings = moduleOf(one, GlslTarget::gl330);
+			ModuleSettings settings = moduleOf(method, filter, GlslTarget::gl330);
 			settings.normals_from_depth = true;
 			CHECK(moduleGlsl(settings, contextOf("nook emit")).find("nook_normals") == std::string::npos);
 			const std::vector<float> cpu = shadeOnCpu(made, samplesFor(settings), settings.shade, {2, {}}).visibility;
 			CAPTURE(static_cast<int>(method), static_cast<int>(filter), context.renderer());
 			checkSamePicture(cpu, drawn(without, settings));
-			std::vector<float> below = drawn(turned(without), settings, -1);
-			for (int y = 0; y < 75 / 2; ++y)
-			{
-				std::swap_ranges(below.begin() + y * 128, below.begin() + (y + 1) * 128, below.begin() + (74 - y) * 128);
-			}
-			checkSamePicture(cpu, below);
+			checkSamePicture(cpu, drawnTurned(without, settings));
 		}
 	}
 }
@@ -505,10 +481,7 @@ TEST_CASE("module: with normals from depth an open plane reads 1", "[emit]")
 		{
 			for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::slices})
 			{
-				PassCase one{"", {}};
-				one.shade.method = method;
-				one.shade.filter = ShadeFilter::none;
-				ModuleSettings settings = moduleOf(one, GlslTarget::gl330);
+				ModuleSettings settings = moduleOf(method, ShadeFilter::none, GlslTarget::gl330);
 				settings.normals_from_depth = true;
 				CAPTURE(static_cast<int>(method), tilt_deg, projection[2][3], context.renderer());
 				const std::vector<float> picture = drawn(planeAt(projection, 96, 54, tilt_deg), settings);
@@ -520,47 +493,31 @@ TEST_CASE("module: with normals from depth an open plane reads 1", "[emit]")
 
 TEST_CASE("module: passes compile for every target, and for Vulkan", "[emit]")
 {
-	const TemporaryFolder folder;
-	const bool validator = toolExists("spirv-val");
-	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300, GlslTarget::vulkan})
+	const GlslTarget target = GENERATE(GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300, GlslTarget::vulkan);
+	const bool other = GENERATE(false, true);
+	const PassCase one = GENERATE(from_range(passCases()));
+	ModuleSettings settings = moduleOf(one, target);
+	settings.gather = true;
+	settings.float_block = other;
+	settings.normals_from_depth = other;
+	settings.device_depth = other;
+	if (other && mayTakeTile(one.shade.method))
 	{
-		for (const bool other : {false, true})
-		{
-			for (const PassCase& one : passCases())
-			{
-				ModuleSettings settings = moduleOf(one, target);
-				settings.gather = true;
-				settings.float_block = other;
-				settings.normals_from_depth = other;
-				settings.device_depth = other;
-				if (other && mayTakeTile(one.shade.method))
-				{
-					settings.methods.front().variants = generateTile(slicePattern(2), {}, RunSettings{2, {}}).variants;
-				}
-				if (other && !settings.methods.front().variants.empty())
-				{
-					settings.methods.front().frames = 4; // of 2 x 2 pixels
-				}
-				const std::string module = moduleGlsl(settings, contextOf("nook emit"));
-				const ShadePlan plan = planOf(frameOf(builtinView("cornell", 32, 32)), samplesFor(settings), settings.shade, false);
-				std::string entry;
-				std::string calls = "vec4(nookGather(at, vec3(0.0, 0.0, -1.0), vec3(0.0, 0.0, 1.0)))";
-				for (const ShadePass& pass : plan.passes)
-				{
-					entry = pass.of_pixel ? pass.kernel.call : entry;
-					calls += " + vec4(" + passCallOf(pass, entry, settings.shade.half_resolution) + ")";
-				}
-				writeFile(folder / "m.frag", shaderOf(settings, module, PictureFormat::quad, calls));
-				const bool vulkan = target == GlslTarget::vulkan;
-				CAPTURE(one.name, other, static_cast<int>(target));
-				REQUIRE(passes("glslangValidator " + (vulkan ? "-V -o '" + folder / "m.spv" + "' " : std::string()) + "'" +
-								   folder / "m.frag" + "'",
-							   folder));
-				if (vulkan && validator)
-				{
-					REQUIRE(passes("spirv-val --target-env vulkan1.0 '" + folder / "m.spv" + "'", folder));
-				}
-			}
-		}
+		settings.methods.front().variants = generateTile(slicePattern(2), {}, RunSettings{2, {}}).variants;
 	}
+	if (other && settings.methods.front().variants.size() > 1)
+	{
+		settings.methods.front().frames = 4; // of 2 x 2 pixels
+	}
+	const std::string module = moduleGlsl(settings, contextOf("nook emit"));
+	const ShadePlan plan = planOf(frameOf(builtinView("cornell", 32, 32)), samplesFor(settings), settings.shade, false);
+	std::string entry;
+	std::string calls = "vec4(nookGather(at, vec3(0.0, 0.0, -1.0), vec3(0.0, 0.0, 1.0)))";
+	for (const ShadePass& pass : plan.passes)
+	{
+		entry = pass.of_pixel ? pass.kernel.call : entry;
+		calls += " + vec4(" + passCallOf(pass, entry, settings.shade.half_resolution) + ")";
+	}
+	CAPTURE(one.name, other, static_cast<int>(target));
+	requireCompiles(shaderOf(settings, module, PictureFormat::quad, calls), target);
 }

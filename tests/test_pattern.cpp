@@ -72,18 +72,16 @@ void checkPattern(const Pattern& p, const Recipe& recipe)
 
 TEST_CASE("generate: every method makes every domain, small counts included", "[pattern]")
 {
-	for (const Domain domain : {Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere})
+	const Domain domain = GENERATE(Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere);
+	for (std::size_t m = 0; m < namesOf<Method>().size(); ++m)
 	{
-		for (std::size_t m = 0; m < namesOf<Method>().size(); ++m)
+		for (const int count : {1, 2, 3, 4, 5, 17})
 		{
-			for (const int count : {1, 2, 3, 4, 5, 17})
-			{
-				Recipe recipe = recipeOf(domain, count, static_cast<Method>(m));
-				const bool relaxed = recipe.method == Method::refine || recipe.method == Method::electro ||
-									 recipe.method == Method::equal || recipe.method == Method::lloyd;
-				recipe.starts = relaxed ? 2 : 0;
-				checkPattern(generatePattern(recipe), recipe);
-			}
+			Recipe recipe = recipeOf(domain, count, static_cast<Method>(m));
+			const bool relaxed = recipe.method == Method::refine || recipe.method == Method::electro ||
+								 recipe.method == Method::equal || recipe.method == Method::lloyd;
+			recipe.starts = relaxed ? 2 : 0;
+			checkPattern(generatePattern(recipe), recipe);
 		}
 	}
 }
@@ -121,33 +119,29 @@ TEST_CASE("generate: symmetric patterns hold exact opposites with equal weights,
 
 TEST_CASE("generate: who watches sees every start move within the domain, and changes no bit", "[pattern]")
 {
-	for (const Domain domain : {Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere})
+	const Domain domain = GENERATE(Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere);
+	const Method method = GENERATE(Method::refine, Method::electro, Method::equal, Method::lloyd);
+	Recipe recipe = recipeOf(domain, 7, method);
+	recipe.starts = 4;
+	std::set<std::size_t> starts;
+	std::size_t seen = 0;
+	const auto watch = [&](std::size_t start, std::span<const glm::dvec3> points)
 	{
-		for (const Method method : {Method::refine, Method::electro, Method::equal, Method::lloyd})
+		CHECK(points.size() == 7);
+		for (const glm::dvec3& p : points)
 		{
-			Recipe recipe = recipeOf(domain, 7, method);
-			recipe.starts = 4;
-			std::set<std::size_t> starts;
-			std::size_t seen = 0;
-			const auto watch = [&](std::size_t start, std::span<const glm::dvec3> points)
-			{
-				CHECK(points.size() == 7);
-				for (const glm::dvec3& p : points)
-				{
-					CHECK(glm::length(p) < 1.0 + 1e-9);
-				}
-				starts.insert(start);
-				seen += 1;
-			};
-			const Pattern watched = generatePattern(recipe, {}, watch);
-			const Pattern alone = generatePattern(recipe);
-			CAPTURE(nameOf(domain), nameOf(method));
-			CHECK(watched.points == alone.points);
-			CHECK(watched.weights == alone.weights);
-			CHECK(starts == std::set<std::size_t>{0, 1, 2, 3});
-			CHECK(seen > 8);
+			CHECK(glm::length(p) < 1.0 + 1e-9);
 		}
-	}
+		starts.insert(start);
+		seen += 1;
+	};
+	const Pattern watched = generatePattern(recipe, {}, watch);
+	const Pattern alone = generatePattern(recipe);
+	CAPTURE(nameOf(domain), nameOf(method));
+	CHECK(watched.points == alone.points);
+	CHECK(watched.weights == alone.weights);
+	CHECK(starts == std::set<std::size_t>{0, 1, 2, 3});
+	CHECK(seen > 8);
 }
 
 TEST_CASE("generate: another seed makes another random pattern, and the same seed the same", "[pattern]")
@@ -217,17 +211,13 @@ TEST_CASE("refine: each measure is lowest where it is minimised", "[pattern]")
 
 TEST_CASE("equal: the cells' integrals are equal", "[pattern]")
 {
-	for (const Domain domain : {Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere})
-	{
-		for (const int count : {2, 3, 5, 16, 33, 64})
-		{
-			Recipe recipe = recipeOf(domain, count, Method::equal);
-			recipe.starts = 2;
-			const Pattern p = generatePattern(recipe, kTwoThreads);
-			INFO("domain " << nameOf(domain) << " count " << count);
-			CHECK(relativeSpread(exactCells(domain, p.points, p.powers).integrals) <= 1e-9);
-		}
-	}
+	const Domain domain = GENERATE(Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere);
+	const int count = GENERATE(2, 3, 5, 16, 33, 64);
+	Recipe recipe = recipeOf(domain, count, Method::equal);
+	recipe.starts = 2;
+	const Pattern p = generatePattern(recipe, kTwoThreads);
+	INFO("domain " << nameOf(domain) << " count " << count);
+	CHECK(relativeSpread(exactCells(domain, p.points, p.powers).integrals) <= 1e-9);
 }
 
 TEST_CASE("electro: the sphere's closed forms of least energy", "[pattern]")
@@ -290,25 +280,23 @@ TEST_CASE("electro: a higher exponent spreads the least distance", "[pattern]")
 
 TEST_CASE("fitted: no other weights of the same points do better", "[pattern]")
 {
-	for (const Domain domain : {Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere})
+	const Domain domain = GENERATE(Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere);
+	const Pattern p = generatePattern(recipeOf(domain, 20, Method::random));
+	const std::vector<double> fitted = fittedWeights(domain, p.points);
+	EnergyGradient gradient;
+	squaredError(domain, Ensemble::plane, Part::whole, p.points, fitted, &gradient);
+	// At the minimum, the slope is equal for all weights in use and not lower for the others.
+	double slope = 0.0;
+	for (std::size_t i = 0; i < p.count(); ++i)
 	{
-		const Pattern p = generatePattern(recipeOf(domain, 20, Method::random));
-		const std::vector<double> fitted = fittedWeights(domain, p.points);
-		EnergyGradient gradient;
-		squaredError(domain, Ensemble::plane, Part::whole, p.points, fitted, &gradient);
-		// At the minimum, the slope is equal for all weights in use and not lower for the others.
-		double slope = 0.0;
-		for (std::size_t i = 0; i < p.count(); ++i)
-		{
-			CHECK(fitted[i] >= 0.0);
-			slope += fitted[i] * gradient.weights[i];
-		}
-		CHECK(std::accumulate(fitted.begin(), fitted.end(), 0.0) == Approx(1.0).epsilon(1e-12));
-		for (std::size_t i = 0; i < p.count(); ++i)
-		{
-			CHECK(gradient.weights[i] - slope >= -1e-9);
-			CHECK(fitted[i] * (gradient.weights[i] - slope) <= 1e-9);
-		}
+		CHECK(fitted[i] >= 0.0);
+		slope += fitted[i] * gradient.weights[i];
+	}
+	CHECK(std::accumulate(fitted.begin(), fitted.end(), 0.0) == Approx(1.0).epsilon(1e-12));
+	for (std::size_t i = 0; i < p.count(); ++i)
+	{
+		CHECK(gradient.weights[i] - slope >= -1e-9);
+		CHECK(fitted[i] * (gradient.weights[i] - slope) <= 1e-9);
 	}
 }
 

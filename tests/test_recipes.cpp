@@ -52,19 +52,17 @@ std::string messageOf(const std::string& text)
 
 TEST_CASE("recipes: every screen-space method has one of rays, with a strength and a power", "[methods]")
 {
-	for (const MethodRow& row : methodTable())
+	const MethodRow row = GENERATE(from_range(methodTable()));
+	if (row.kind == MethodKind::screen)
 	{
-		if (row.kind == MethodKind::screen)
-		{
-			CAPTURE(row.name);
-			const MethodRecipe* const recipe = recipeFor(raysRecipes(), row.method);
-			REQUIRE(recipe != nullptr);
-			ShadeSettings settings;
-			settings.method = row.method;
-			applyRecipe(settings, *recipe, 2.0);
-			CHECK(settings.radius_m == 2.0 * recipe->radius);
-			CHECK(isShaped(settings));
-		}
+		CAPTURE(row.name);
+		const MethodRecipe* const recipe = recipeFor(raysRecipes(), row.method);
+		REQUIRE(recipe != nullptr);
+		ShadeSettings settings;
+		settings.method = row.method;
+		applyRecipe(settings, *recipe, 2.0);
+		CHECK(settings.radius_m == 2.0 * recipe->radius);
+		CHECK(isShaped(settings));
 	}
 }
 
@@ -136,25 +134,21 @@ TEST_CASE("shade: strength and power change the finished picture alone", "[shade
 {
 	const Scene scene = cornell(48, 36);
 	const ShadeSamples samples = lines(6);
-	for (const ShadeFilter filter : {ShadeFilter::none, ShadeFilter::bilateral})
+	const ShadeFilter filter = GENERATE(ShadeFilter::none, ShadeFilter::bilateral);
+	const bool half = GENERATE(false, true);
+	ShadeSettings settings;
+	settings.filter = filter;
+	settings.half_resolution = half;
+	std::vector<float> expected = scene.draw(settings, samples);
+	for (float& v : expected)
 	{
-		for (const bool half : {false, true})
-		{
-			ShadeSettings settings;
-			settings.filter = filter;
-			settings.half_resolution = half;
-			std::vector<float> expected = scene.draw(settings, samples);
-			for (float& v : expected)
-			{
-				v = std::pow(std::max(0.0F, 1.0F - 1.4F * (1.0F - v)), 0.7F);
-			}
-			settings.strength = 1.4;
-			settings.power = 0.7;
-			CAPTURE(static_cast<int>(filter), half);
-			CHECK(differenceOf(scene.draw(settings, samples), expected).worst < 1e-6);
-			CHECK(differenceOf(scene.draw(settings, samples, true), expected).worst < 1.0 / 255.0);
-		}
+		v = std::pow(std::max(0.0F, 1.0F - 1.4F * (1.0F - v)), 0.7F);
 	}
+	settings.strength = 1.4;
+	settings.power = 0.7;
+	CAPTURE(static_cast<int>(filter), half);
+	CHECK(differenceOf(scene.draw(settings, samples), expected).worst < 1e-6);
+	CHECK(differenceOf(scene.draw(settings, samples, true), expected).worst < 1.0 / 255.0);
 }
 
 TEST_CASE("shade: three radii are the product or the least of one radius each", "[shade]")
@@ -188,32 +182,28 @@ TEST_CASE("shade: three radii are the product or the least of one radius each", 
 
 TEST_CASE("shade: by the recipe of rays an open plane is open, at any slope", "[shade]")
 {
-	for (const double tilt_deg : {0.0, 45.0, 80.0})
+	const double tilt_deg = GENERATE(0.0, 45.0, 80.0);
+	const double slope = std::tan(tilt_deg * 3.14159265358979 / 180.0);
+	GBuffer gbuffer;
+	gbuffer.width_px = 64;
+	gbuffer.height_px = 48;
+	gbuffer.view.projection = projectionOf({true, 1.0, 3.0, 0.1, 100.0}, 64.0 / 48.0);
+	const Projector projector(gbuffer.view.projection, 64, 48);
+	for (int i = 0; i < 64 * 48; ++i)
 	{
-		const double slope = std::tan(tilt_deg * 3.14159265358979 / 180.0);
-		GBuffer gbuffer;
-		gbuffer.width_px = 64;
-		gbuffer.height_px = 48;
-		gbuffer.view.projection = projectionOf({true, 1.0, 3.0, 0.1, 100.0}, 64.0 / 48.0);
-		const Projector projector(gbuffer.view.projection, 64, 48);
-		for (int i = 0; i < 64 * 48; ++i)
-		{
-			const ViewLine line = projector.lineOf({i % 64 + 0.5, i / 64 + 0.5});
-			gbuffer.depth.push_back(static_cast<float>(50.0 + slope * line.at.x));
-			gbuffer.normals.push_back(glm::vec3(glm::normalize(glm::dvec3(slope, 0.0, 1.0))));
-		}
-		for (const MethodRow& row : methodTable())
-		{
-			if (row.kind == MethodKind::screen && row.emitted && row.domain)
-			{
-				Candidate candidate = fittedCandidate(row);
-				candidate.recipe = *recipeFor(raysRecipes(), row.method);
-				const ShadeSettings settings = shadeSettingsOf(candidate, 0.5);
-				const std::vector<float> picture = Scene{gbuffer}.draw(settings, samplesOf(candidate, settings, {}));
-				CAPTURE(row.name, tilt_deg);
-				CHECK(*std::min_element(picture.begin(), picture.end()) >= 1.0F - 1.0F / 255.0F);
-			}
-		}
+		const ViewLine line = projector.lineOf({i % 64 + 0.5, i / 64 + 0.5});
+		gbuffer.depth.push_back(static_cast<float>(50.0 + slope * line.at.x));
+		gbuffer.normals.push_back(glm::vec3(glm::normalize(glm::dvec3(slope, 0.0, 1.0))));
+	}
+	const MethodRow row = GENERATE(from_range(methodTable()));
+	if (row.kind == MethodKind::screen && row.emitted && row.domain)
+	{
+		Candidate candidate = fittedCandidate(row);
+		candidate.recipe = *recipeFor(raysRecipes(), row.method);
+		const ShadeSettings settings = shadeSettingsOf(candidate, 0.5);
+		const std::vector<float> picture = Scene{gbuffer}.draw(settings, samplesOf(candidate, settings, {}));
+		CAPTURE(row.name, tilt_deg);
+		CHECK(*std::min_element(picture.begin(), picture.end()) >= 1.0F - 1.0F / 255.0F);
 	}
 }
 

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reference visibility compared with closed forms.
 #include "small_levels.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/file.h"
-#include "core/random.h"
 #include "scene/reference.h"
 #include "scene/sample_set.h"
 
@@ -385,20 +382,18 @@ TEST_CASE("reference: a plane does not occlude itself, from a millimetre to 1000
 
 TEST_CASE("reference: a flat floor in a G-buffer reads 1, near and far, steep and shallow", "[reference]")
 {
-	for (const double size : {1.0, 1e3, 1e5})
+	const double size = GENERATE(1.0, 1e3, 1e5);
+	Level level = emptyLevel();
+	addQuad(level, {-size, 0.0, -size}, {0.0, 0.0, 2.0 * size}, {2.0 * size, 0.0, 0.0});
+	const Tracer tracer(level, {});
+	LevelCamera camera;
+	camera.world_from_camera = worldFromCamera({0.0, 0.05 * size, 0.9 * size}, {0.0, 0.0, 0.0});
+	GBuffer gbuffer = castGBuffer(tracer, viewOf(camera, 64, 48), 64, 48, NormalKind::geometric, {});
+	ReferenceSettings settings = hard(0.1 * size);
+	settings.rays = 64;
+	for (const ReferenceValue& value : referenceOfGBuffer(&tracer, gbuffer, settings, {}))
 	{
-		Level level = emptyLevel();
-		addQuad(level, {-size, 0.0, -size}, {0.0, 0.0, 2.0 * size}, {2.0 * size, 0.0, 0.0});
-		const Tracer tracer(level, {});
-		LevelCamera camera;
-		camera.world_from_camera = worldFromCamera({0.0, 0.05 * size, 0.9 * size}, {0.0, 0.0, 0.0});
-		GBuffer gbuffer = castGBuffer(tracer, viewOf(camera, 64, 48), 64, 48, NormalKind::geometric, {});
-		ReferenceSettings settings = hard(0.1 * size);
-		settings.rays = 64;
-		for (const ReferenceValue& value : referenceOfGBuffer(&tracer, gbuffer, settings, {}))
-		{
-			REQUIRE(value.visibility == 1.0);
-		}
+		REQUIRE(value.visibility == 1.0);
 	}
 }
 
@@ -414,40 +409,37 @@ TEST_CASE("reference: a depth buffer's coarse numbers do not make a floor occlud
 	const Projector projector(truth.view.projection, 32, 24);
 	ReferenceSettings settings = hard(1.0);
 	settings.rays = 16;
-	for (const double steps : {0.0, 65535.0, 16777215.0})
+	const double steps = GENERATE(0.0, 65535.0, 16777215.0);
+	CAPTURE(steps);
+	Image image{32, 24, {"N.X", "N.Y", "N.Z", "depth"}, {}, {}, {}};
+	for (std::size_t i = 0; i < truth.depth.size(); ++i)
 	{
-		CAPTURE(steps);
-		Image image{32, 24, {"N.X", "N.Y", "N.Z", "depth"}, {}, {}, {}};
-		for (std::size_t i = 0; i < truth.depth.size(); ++i)
-		{
-			const ViewLine line = projector.lineOf({static_cast<double>(i % 32) + 0.5, static_cast<double>(i / 32) + 0.5});
-			const double depth = std::min(static_cast<double>(truth.depth[i]), 1e9);
-			const glm::dvec4 clip = truth.view.projection * glm::dvec4(line.at + depth * line.along, 1.0);
-			const double device = std::min(0.5 * clip.z / clip.w + 0.5, 1.0);
-			const glm::vec3 n = truth.normals[i];
-			image.values.insert(image.values.end(),
-								{n.x, n.y, n.z,
-								 static_cast<float>(depth == 1e9   ? 1.0
-													: steps == 0.0 ? device
-																   : std::floor(device * steps + 0.5) / steps)});
-		}
-		const TemporaryFolder folder;
-		writeFile(folder / "engine.exr", exrBytes(image));
-		GBufferImport import;
-		import.depth = DepthKind::device;
-		import.projection = truth.view.projection;
-		import.camera_from_world = truth.view.camera_from_world;
-		const GBuffer gbuffer = readGBuffer(folder / "engine.exr", import);
-		std::size_t open = 0;
-		std::size_t seen = 0;
-		for (const ReferenceValue& value : referenceOfGBuffer(&tracer, gbuffer, settings, {}))
-		{
-			seen += value.rays > 0 ? 1U : 0U;
-			open += value.rays > 0 && value.visibility == 1.0 ? 1U : 0U;
-		}
-		CHECK(seen > 300);
-		CHECK(open == seen);
+		const ViewLine line = projector.lineOf({static_cast<double>(i % 32) + 0.5, static_cast<double>(i / 32) + 0.5});
+		const double depth = std::min(static_cast<double>(truth.depth[i]), 1e9);
+		const glm::dvec4 clip = truth.view.projection * glm::dvec4(line.at + depth * line.along, 1.0);
+		const double device = std::min(0.5 * clip.z / clip.w + 0.5, 1.0);
+		const glm::vec3 n = truth.normals[i];
+		image.values.insert(image.values.end(), {n.x, n.y, n.z,
+												 static_cast<float>(depth == 1e9   ? 1.0
+																	: steps == 0.0 ? device
+																				   : std::floor(device * steps + 0.5) / steps)});
 	}
+	const TemporaryFolder folder;
+	writeFile(folder / "engine.exr", exrBytes(image));
+	GBufferImport import;
+	import.depth = DepthKind::device;
+	import.projection = truth.view.projection;
+	import.camera_from_world = truth.view.camera_from_world;
+	const GBuffer gbuffer = readGBuffer(folder / "engine.exr", import);
+	std::size_t open = 0;
+	std::size_t seen = 0;
+	for (const ReferenceValue& value : referenceOfGBuffer(&tracer, gbuffer, settings, {}))
+	{
+		seen += value.rays > 0 ? 1U : 0U;
+		open += value.rays > 0 && value.visibility == 1.0 ? 1U : 0U;
+	}
+	CHECK(seen > 300);
+	CHECK(open == seen);
 }
 
 TEST_CASE("reference: a depth that is no length is refused by its pixel", "[reference]")
@@ -456,13 +448,11 @@ TEST_CASE("reference: a depth that is no length is refused by its pixel", "[refe
 	addQuad(level, {-1.0, -1.0, -2.0}, {2.0, 0.0, 0.0}, {0.0, 2.0, 0.0});
 	const Tracer tracer(level, {});
 	View view{.projection = projectionOf({}, 1.0)};
-	for (const float depth : {1e-45F, 1e-13F, 1e13F, 1e30F})
-	{
-		GBuffer gbuffer = castGBuffer(tracer, view, 4, 4, NormalKind::geometric, {});
-		CHECK_NOTHROW(referenceOfGBuffer(&tracer, gbuffer, {}, {}));
-		gbuffer.depth[4 * 3 + 1] = depth;
-		CHECK(refusalBy([&] { referenceOfGBuffer(&tracer, gbuffer, {}, {}); }).starts_with("depth, pixel 1,3: found "));
-	}
+	const float depth = GENERATE(1e-45F, 1e-13F, 1e13F, 1e30F);
+	GBuffer gbuffer = castGBuffer(tracer, view, 4, 4, NormalKind::geometric, {});
+	CHECK_NOTHROW(referenceOfGBuffer(&tracer, gbuffer, {}, {}));
+	gbuffer.depth[4 * 3 + 1] = depth;
+	CHECK(refusalBy([&] { referenceOfGBuffer(&tracer, gbuffer, {}, {}); }).starts_with("depth, pixel 1,3: found "));
 }
 
 TEST_CASE("reference: lists of points are read line by line", "[reference]")

@@ -2,7 +2,6 @@
 #include "testing.h"
 
 #include "core/json_reader.h"
-#include "core/math.h"
 #include "pattern/recipe.h"
 #include "study/noise_report.h"
 

@@ -97,78 +97,72 @@ TEST_CASE("scene: each mesh of a built-in level encloses a positive volume", "[s
 
 TEST_CASE("scene: built-in levels have sound triangles, normals and texture coordinates", "[scene]")
 {
-	for (const std::string& name : kLevels)
+	const std::string name = GENERATE(from_range(kLevels));
+	INFO(name);
+	const Level level = builtinLevel(name);
+	CHECK(level.name == "builtin:" + name);
+	REQUIRE(level.normals.size() == level.positions.size());
+	REQUIRE(level.uvs.size() == level.positions.size());
+	REQUIRE(level.materials.size() == level.triangles.size());
+	std::size_t degenerate = 0;
+	std::size_t turned = 0;
+	std::size_t not_unit = 0;
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
 	{
-		INFO(name);
-		const Level level = builtinLevel(name);
-		CHECK(level.name == "builtin:" + name);
-		REQUIRE(level.normals.size() == level.positions.size());
-		REQUIRE(level.uvs.size() == level.positions.size());
-		REQUIRE(level.materials.size() == level.triangles.size());
-		std::size_t degenerate = 0;
-		std::size_t turned = 0;
-		std::size_t not_unit = 0;
-		for (std::size_t i = 0; i < level.triangles.size(); ++i)
+		const std::array<glm::dvec3, 3> p = cornersOf(level, i);
+		const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
+		const double longest = std::max({glm::length(p[1] - p[0]), glm::length(p[2] - p[1]), glm::length(p[0] - p[2])});
+		degenerate += glm::length(across) > 1e-6 * longest * longest ? 0U : 1U;
+		for (int k = 0; k < 3; ++k)
 		{
-			const std::array<glm::dvec3, 3> p = cornersOf(level, i);
-			const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
-			const double longest = std::max({glm::length(p[1] - p[0]), glm::length(p[2] - p[1]), glm::length(p[0] - p[2])});
-			degenerate += glm::length(across) > 1e-6 * longest * longest ? 0U : 1U;
-			for (int k = 0; k < 3; ++k)
-			{
-				const glm::dvec3 normal = level.normals[level.triangles[i][k]];
-				turned += glm::dot(normal, across) > 0.0 ? 0U : 1U;
-				not_unit += std::fabs(glm::length(normal) - 1.0) < 1e-6 ? 0U : 1U;
-			}
+			const glm::dvec3 normal = level.normals[level.triangles[i][k]];
+			turned += glm::dot(normal, across) > 0.0 ? 0U : 1U;
+			not_unit += std::fabs(glm::length(normal) - 1.0) < 1e-6 ? 0U : 1U;
 		}
-		CHECK(degenerate == 0);
-		CHECK(turned == 0);
-		CHECK(not_unit == 0);
-		std::size_t covered = 0;
-		for (const Mesh& mesh : level.meshes)
-		{
-			CHECK(mesh.first_triangle == covered);
-			covered += mesh.triangle_count;
-		}
-		CHECK(covered == level.triangles.size());
 	}
+	CHECK(degenerate == 0);
+	CHECK(turned == 0);
+	CHECK(not_unit == 0);
+	std::size_t covered = 0;
+	for (const Mesh& mesh : level.meshes)
+	{
+		CHECK(mesh.first_triangle == covered);
+		covered += mesh.triangle_count;
+	}
+	CHECK(covered == level.triangles.size());
 }
 
 TEST_CASE("scene: a built-in level is the same each time", "[scene]")
 {
-	for (const std::string& name : kLevels)
+	const std::string name = GENERATE(from_range(kLevels));
+	INFO(name);
+	const Level a = builtinLevel(name);
+	const Level b = builtinLevel(name);
+	CHECK(sameBytes(a.positions, b.positions));
+	CHECK(sameBytes(a.normals, b.normals));
+	CHECK(sameBytes(a.uvs, b.uvs));
+	CHECK(sameBytes(a.triangles, b.triangles));
+	REQUIRE(a.masks.size() == b.masks.size());
+	for (std::size_t i = 0; i < a.masks.size(); ++i)
 	{
-		INFO(name);
-		const Level a = builtinLevel(name);
-		const Level b = builtinLevel(name);
-		CHECK(sameBytes(a.positions, b.positions));
-		CHECK(sameBytes(a.normals, b.normals));
-		CHECK(sameBytes(a.uvs, b.uvs));
-		CHECK(sameBytes(a.triangles, b.triangles));
-		REQUIRE(a.masks.size() == b.masks.size());
-		for (std::size_t i = 0; i < a.masks.size(); ++i)
-		{
-			CHECK(a.masks[i].alpha == b.masks[i].alpha);
-		}
+		CHECK(a.masks[i].alpha == b.masks[i].alpha);
 	}
 }
 
 TEST_CASE("scene: cameras of built-in levels stand in the open and see something", "[scene][camera]")
 {
-	for (const std::string& name : kLevels)
+	const std::string name = GENERATE(from_range(kLevels));
+	const Level level = builtinLevel(name);
+	const Tracer tracer(level, {});
+	REQUIRE_FALSE(level.cameras.empty());
+	CHECK(level.cameras.front().name == "main");
+	for (const LevelCamera& camera : level.cameras)
 	{
-		const Level level = builtinLevel(name);
-		const Tracer tracer(level, {});
-		REQUIRE_FALSE(level.cameras.empty());
-		CHECK(level.cameras.front().name == "main");
-		for (const LevelCamera& camera : level.cameras)
-		{
-			INFO(name << ": " << camera.name);
-			CHECK_NOTHROW(checkOutside(tracer, glm::dvec3(camera.world_from_camera[3]), camera.name));
-			// The overview of the nulls shows separate squares, and two grids of two triangles are mostly sky.
-			const bool sparse = (name == "nulls" && camera.name == "main") || name == "heightfield:2";
-			CHECK(hitsPerCent(tracer, camera) >= (sparse ? 20 : 55));
-		}
+		INFO(name << ": " << camera.name);
+		CHECK_NOTHROW(checkOutside(tracer, glm::dvec3(camera.world_from_camera[3]), camera.name));
+		// The overview of the nulls shows separate squares, and two grids of two triangles are mostly sky.
+		const bool sparse = (name == "nulls" && camera.name == "main") || name == "heightfield:2";
+		CHECK(hitsPerCent(tracer, camera) >= (sparse ? 20 : 55));
 	}
 }
 

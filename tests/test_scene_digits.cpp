@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Levels at map coordinates: text and 64-bit numbers keep their full precision throughout.
 #include "level_files.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
 #include "scene/level_glb.h"

@@ -2,10 +2,7 @@
 // FBX files generated here, and what must be read from them.
 #include "fbx_files.h"
 #include "small_levels.h"
-#include "temporary_folder.h"
 #include "testing.h"
-
-#include "core/math.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -142,21 +139,15 @@ TEST_CASE("scene: FBX reads the same from text and every binary form", "[scene]"
 	CHECK(expected.positions.front() == glm::dvec3(500000.125, 0.0, 4649776.2224721)); // full precision
 	CHECK(areaOf(expected) == Approx(1.0));
 	checkUv(expected, {500000.125, 0.0, 4649777.2224721}, {0.0, 0.0});
-	for (const uint32_t version : {7100U, 7400U, 7500U, 7700U})
-	{
-		for (const bool compressed : {false, true})
-		{
-			for (const bool big_endian : {false, true})
-			{
-				INFO(version << " " << compressed << " " << big_endian);
-				const Level level = loadText(folder / "b.fbx", scene.bytes({version, compressed, big_endian})).level;
-				CHECK(level.positions == expected.positions);
-				CHECK(level.uvs == expected.uvs);
-				CHECK(level.triangles == expected.triangles);
-				CHECK(level.meshes.front().name == "sheet");
-			}
-		}
-	}
+	const uint32_t version = GENERATE(7100U, 7400U, 7500U, 7700U);
+	const bool compressed = GENERATE(false, true);
+	const bool big_endian = GENERATE(false, true);
+	INFO(version << " " << compressed << " " << big_endian);
+	const Level level = loadText(folder / "b.fbx", scene.bytes({version, compressed, big_endian})).level;
+	CHECK(level.positions == expected.positions);
+	CHECK(level.uvs == expected.uvs);
+	CHECK(level.triangles == expected.triangles);
+	CHECK(level.meshes.front().name == "sheet");
 }
 
 TEST_CASE("scene: a small FBX mesh at map coordinates keeps its shape", "[scene]")
@@ -231,35 +222,33 @@ TEST_CASE("scene: hidden nodes of FBX are left out", "[scene]")
 TEST_CASE("scene: of the levels of detail of FBX the first is read", "[scene]")
 {
 	const TemporaryFolder folder;
-	for (const bool by_attribute : {true, false})
+	const bool by_attribute = GENERATE(true, false);
+	FbxTestScene scene;
+	scene.model(1, "group", 0, by_attribute ? "Null" : "LodGroup");
+	if (by_attribute)
 	{
-		FbxTestScene scene;
-		scene.model(1, "group", 0, by_attribute ? "Null" : "LodGroup");
-		if (by_attribute)
-		{
-			scene.object("NodeAttribute", 20, "group", "LodGroup", 1);
-		}
-		for (int64_t level = 0; level < 3; ++level)
-		{
-			scene.model(2 + level, "lod" + std::to_string(level), 1);
-			scene.box(10 + level, 2 + level, glm::dvec3(1.0 + static_cast<double>(level)));
-		}
-		scene.model(9, "below", 3);
-		scene.box(19, 9);
-		const LoadedLevel loaded = loadScene(folder, scene);
-		checkBox(loaded.level, glm::dvec3(-1.0), glm::dvec3(1.0));
-		CHECK(findingsOf(loaded.diagnosis) == "lower-lods 3 dropped");
-		CHECK(loaded.diagnosis.findings.front().first == "node 'lod1'");
-		// If the first one is hidden, the next one represents it.
-		for (FbxTestNode& object : scene.root.child("Objects").children)
-		{
-			if (object.values[1] == FbxTestValue(std::string("Model::lod0")))
-			{
-				object.set("Visibility", {0.0});
-			}
-		}
-		CHECK(findingsOf(loadScene(folder, scene).diagnosis) == "lower-lods 2 dropped");
+		scene.object("NodeAttribute", 20, "group", "LodGroup", 1);
 	}
+	for (int64_t level = 0; level < 3; ++level)
+	{
+		scene.model(2 + level, "lod" + std::to_string(level), 1);
+		scene.box(10 + level, 2 + level, glm::dvec3(1.0 + static_cast<double>(level)));
+	}
+	scene.model(9, "below", 3);
+	scene.box(19, 9);
+	const LoadedLevel loaded = loadScene(folder, scene);
+	checkBox(loaded.level, glm::dvec3(-1.0), glm::dvec3(1.0));
+	CHECK(findingsOf(loaded.diagnosis) == "lower-lods 3 dropped");
+	CHECK(loaded.diagnosis.findings.front().first == "node 'lod1'");
+	// If the first one is hidden, the next one represents it.
+	for (FbxTestNode& object : scene.root.child("Objects").children)
+	{
+		if (object.values[1] == FbxTestValue(std::string("Model::lod0")))
+		{
+			object.set("Visibility", {0.0});
+		}
+	}
+	CHECK(findingsOf(loadScene(folder, scene).diagnosis) == "lower-lods 2 dropped");
 }
 
 TEST_CASE("scene: FBX nodes turn in every order, between their pivots", "[scene]")
@@ -414,25 +403,23 @@ TEST_CASE("scene: FBX opacity textures lie as the file says", "[scene]")
 TEST_CASE("scene: pictures inside FBX files are masks", "[scene]")
 {
 	const TemporaryFolder folder;
-	for (const char* const property : {"TransparentColor", "TransparencyFactor", "3dsMax|main|opacity_map"})
+	const char* const property = GENERATE(as<const char*>{}, "TransparentColor", "TransparencyFactor", "3dsMax|main|opacity_map");
+	FbxTestScene scene;
+	scene.model(1, "node");
+	addSheet(scene, 10, 1);
+	addMask(scene, 1, property);
+	FbxTestNode& content = scene.object("Video", 500, "picture", "Clip", 400).add("Content", {rowsPng()});
+	CHECK(loadScene(folder, scene).level.material_list.front().coverage == 0.75);
+	const std::string text = base64(rowsPng());
+	for (const std::vector<FbxTestValue>& parts :
+		 {std::vector<FbxTestValue>{base64(rowsPng().substr(0, 40)), base64(rowsPng().substr(40))}, // each padded separately
+		  {text.substr(0, 37), text.substr(37)}})                                                   // split anywhere
 	{
-		FbxTestScene scene;
-		scene.model(1, "node");
-		addSheet(scene, 10, 1);
-		addMask(scene, 1, property);
-		FbxTestNode& content = scene.object("Video", 500, "picture", "Clip", 400).add("Content", {rowsPng()});
-		CHECK(loadScene(folder, scene).level.material_list.front().coverage == 0.75);
-		const std::string text = base64(rowsPng());
-		for (const std::vector<FbxTestValue>& parts :
-			 {std::vector<FbxTestValue>{base64(rowsPng().substr(0, 40)), base64(rowsPng().substr(40))}, // each padded separately
-			  {text.substr(0, 37), text.substr(37)}})                                                   // split anywhere
-		{
-			content.values = parts;
-			CHECK(loadText(folder / "b.fbx", scene.text()).level.material_list.front().coverage == 0.75);
-		}
-		content.values = {std::string("no base64!")};
-		CHECK(refusalOf(folder, scene.text()) == "Texture 'mask': Content: found another text, expected base64");
+		content.values = parts;
+		CHECK(loadText(folder / "b.fbx", scene.text()).level.material_list.front().coverage == 0.75);
 	}
+	content.values = {std::string("no base64!")};
+	CHECK(refusalOf(folder, scene.text()) == "Texture 'mask': Content: found another text, expected base64");
 }
 
 TEST_CASE("scene: opacity of FBX materials", "[scene]")
@@ -533,13 +520,11 @@ TEST_CASE("scene: layers of FBX lie at corners, points, polygons or all", "[scen
 TEST_CASE("scene: FBX nodes that mirror keep the front", "[scene]")
 {
 	const TemporaryFolder folder;
-	for (const double mirror : {1.0, -1.0})
-	{
-		FbxTestScene scene;
-		scene.model(1, "node").set("Lcl Scaling", numbers({2.0 * mirror, 1.0, 1.0}));
-		scene.box(10, 1);
-		CHECK(volumeOf(loadScene(folder, scene).level) == Approx(16.0));
-	}
+	const double mirror = GENERATE(1.0, -1.0);
+	FbxTestScene scene;
+	scene.model(1, "node").set("Lcl Scaling", numbers({2.0 * mirror, 1.0, 1.0}));
+	scene.box(10, 1);
+	CHECK(volumeOf(loadScene(folder, scene).level) == Approx(16.0));
 }
 
 TEST_CASE("scene: skins of FBX move points as their link mode says", "[scene]")

@@ -2,9 +2,7 @@
 // Every finding of a level's diagnosis, provoked deliberately.
 #include "level_files.h"
 #include "small_levels.h"
-#include "temporary_folder.h"
 #include "testing.h"
-
 
 namespace
 {

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Broken and hostile level files: a level with its diagnosis, or one error; never a crash, a hang, or gigabytes.
 #include "level_files.h"
-#include "temporary_folder.h"
 #include "testing.h"
-
-#include "core/random.h"
 
 #include <sys/stat.h>
 

@@ -2,21 +2,10 @@
 // Level files of every format, generated here, and what must be read from them.
 #include "bake_levels.h"
 #include "level_files.h"
-#include "small_levels.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "bake/bake.h"
-#include "core/file.h"
-#include "core/json_reader.h"
-#include "core/json_text.h"
-#include "core/math.h"
-#include "core/random.h"
 #include "scene/describe.h"
-#include "scene/level.h"
 #include "scene/level_glb.h"
-#include "scene/load.h"
-#include "scene/load_parts.h"
 #include "scene/mesh_text.h"
 #include "volume/build.h"
 #include "volume/evaluate.h"
@@ -488,18 +477,16 @@ TEST_CASE("advice: closed and open components, shared places and patches are cou
 	addBox(level, {0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}); // faces with their own vertices: still closed
 	addBox(level, {5.0, 0.0, 0.0}, {6.0, 1.0, 1.0});
 	addQuad(level, {0.0, -1.0, 9.0}, {9.0, 0.0, 0.0}, {0.0, 0.0, -9.0}); // a sheet
-	for (const int threads : {1, 2})
-	{
-		const LevelFacts facts = levelFacts(level, threads);
-		CHECK(facts.components == 3);
-		CHECK(facts.closed == 2);
-		CHECK(facts.open_triangles == 2);
-		CHECK(facts.places == 8 + 8 + 4);
-		CHECK(facts.sharing == level.positions.size() - 20);
-		CHECK(facts.patches == 6 + 6 + 1);
-		CHECK(std::fabs(facts.median_edge_m - std::sqrt(40.5)) < 1e-9);
-		CHECK(facts.coarse_share == 1.0);
-	}
+	const int threads = GENERATE(1, 2);
+	const LevelFacts facts = levelFacts(level, threads);
+	CHECK(facts.components == 3);
+	CHECK(facts.closed == 2);
+	CHECK(facts.open_triangles == 2);
+	CHECK(facts.places == 8 + 8 + 4);
+	CHECK(facts.sharing == level.positions.size() - 20);
+	CHECK(facts.patches == 6 + 6 + 1);
+	CHECK(std::fabs(facts.median_edge_m - std::sqrt(40.5)) < 1e-9);
+	CHECK(facts.coarse_share == 1.0);
 }
 
 TEST_CASE("advice: coarse architecture takes volumes, dense meshes a bake", "[scene]")
@@ -518,26 +505,25 @@ TEST_CASE("advice: coarse architecture takes volumes, dense meshes a bake", "[sc
 
 TEST_CASE("advice: masks take about the expected bytes, the same for any number of threads", "[scene]")
 {
-	for (const char* const name : {"builtin:cornell", "builtin:suburb", "builtin:cave:20000", "builtin:heightfield:20000"})
-	{
-		const LoadedLevel loaded = loadLevel(name, {}, {});
-		const LevelFacts facts = levelFacts(loaded.level, 1);
-		const AssetEstimate expected = masksEstimate(loaded.level, facts, {1, {}, nullptr});
-		const AssetEstimate again = masksEstimate(loaded.level, levelFacts(loaded.level, 2), {2, {}, nullptr});
-		CHECK(expected.bytes == again.bytes);
-		CHECK(expected.seconds == again.seconds);
-		CHECK(expected.memory_bytes == again.memory_bytes);
-		VolumeSettings settings;
-		settings.masks = true;
-		settings.distance_m = facts.radius_m;
-		settings.occluders.distance_m = facts.radius_m;
-		VolumeSet set = buildVolumes(loaded.level, settings, {2, {}, nullptr}).set;
-		clusterVolumes(set, kMaskClusters, {2, {}, nullptr});
-		const auto bytes = static_cast<double>(volumeGlb(set, {}, name, "", {2, {}, nullptr}).bytes.size());
-		INFO(name << ": " << expected.bytes << " expected, " << bytes);
-		CHECK(expected.bytes < 1.3 * bytes);
-		CHECK(bytes < 1.3 * expected.bytes);
-	}
+	const char* const name =
+		GENERATE(as<const char*>{}, "builtin:cornell", "builtin:suburb", "builtin:cave:20000", "builtin:heightfield:20000");
+	const LoadedLevel loaded = loadLevel(name, {}, {});
+	const LevelFacts facts = levelFacts(loaded.level, 1);
+	const AssetEstimate expected = masksEstimate(loaded.level, facts, {1, {}, nullptr});
+	const AssetEstimate again = masksEstimate(loaded.level, levelFacts(loaded.level, 2), {2, {}, nullptr});
+	CHECK(expected.bytes == again.bytes);
+	CHECK(expected.seconds == again.seconds);
+	CHECK(expected.memory_bytes == again.memory_bytes);
+	VolumeSettings settings;
+	settings.masks = true;
+	settings.distance_m = facts.radius_m;
+	settings.occluders.distance_m = facts.radius_m;
+	VolumeSet set = buildVolumes(loaded.level, settings, {2, {}, nullptr}).set;
+	clusterVolumes(set, kMaskClusters, {2, {}, nullptr});
+	const auto bytes = static_cast<double>(volumeGlb(set, {}, name, "", {2, {}, nullptr}).bytes.size());
+	INFO(name << ": " << expected.bytes << " expected, " << bytes);
+	CHECK(expected.bytes < 1.3 * bytes);
+	CHECK(bytes < 1.3 * expected.bytes);
 }
 
 TEST_CASE("advice: a bake takes four bytes per vertex, and again for the backs of sheets", "[scene]")

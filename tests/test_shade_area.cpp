@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Area samples if the picture is a rectangle of a larger texture.
+#include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
-
-#include "methods/block.h"
-#include "methods/kernels.h"
-#include "pattern/recipe.h"
-#include "shade/shade.h"
 
 namespace
 {
@@ -17,27 +13,9 @@ std::vector<float> areasInTexture(const GBuffer& gbuffer, const ShadeSamples& sa
 {
 	const int width = gbuffer.width_px;
 	const int height = gbuffer.height_px;
-	const int stride = x0 + width + 11;
-	const std::vector<float> picture = finiteDepths(gbuffer);
-	const auto size = static_cast<std::size_t>(stride * (y0 + height + 7));
-	std::vector<float> depths(size, std::numeric_limits<float>::quiet_NaN());
-	std::vector<glm::vec3> normals(size, glm::vec3(std::numeric_limits<float>::quiet_NaN()));
-	for (int i = 0; i < width * height; ++i)
-	{
-		const auto to = static_cast<std::size_t>((y0 + i / width) * stride + x0 + i % width);
-		depths[to] = picture[static_cast<std::size_t>(i)];
-		normals[to] = gbuffer.normals[static_cast<std::size_t>(i)];
-	}
+	InTexture texture(gbuffer, samples, settings, {x0, y0});
+	shade_kernels::Kernels& kernels = texture.kernels;
 	std::vector<PicturePlane> levels(kMomentLevels);
-	shade_kernels::Kernels kernels;
-	kernels.nook = blockOf(frameOf(gbuffer), samples, settings);
-	kernels.nook.origin = glm::vec2(x0, y0);
-	kernels.nook.first = {x0, y0};
-	kernels.nook.last = {x0 + width - 1, y0 + height - 1};
-	kernels.depths = depths;
-	kernels.normals = normals;
-	kernels.samples = samples.samples;
-	kernels.stride = stride;
 	for (int level = 0; level < kMomentLevels; ++level)
 	{
 		PicturePlane& plane = levels[static_cast<std::size_t>(level)];
@@ -65,18 +43,13 @@ std::vector<float> areasInTexture(const GBuffer& gbuffer, const ShadeSamples& sa
 
 TEST_CASE("shade: areas in a rectangle of a texture are those of the picture alone, and planes stay planes", "[shade]")
 {
-	ShadeSettings settings;
-	settings.method = ShadeMethod::vo_area;
-	settings.radius_m = 1.0;
-	Recipe recipe{.domain = Domain::disk, .count = 5, .starts = 2};
-	const ShadeSamples samples = samplesOf(settings.method, {generatePattern(recipe)});
+	const ShadeSettings settings = settingsFor(ShadeMethod::vo_area, 1.0);
+	const ShadeSamples samples = samplesFor(settings.method, 5);
 	const GBuffer courtyard = builtinView("courtyard", 90, 70);
 	// Shifted by texels of the last level: bit-identical.
 	CHECK(areasInTexture(courtyard, samples, settings, 64, 128) == shadeOnCpu(courtyard, samples, settings, {2, {}}).visibility);
 	const GBuffer plane = planeAt(projectionOf(lensOf(60.0), 90.0 / 70.0), 90, 70, 40.0);
-	for (const glm::ivec2 at : {glm::ivec2(5, 3), glm::ivec2(30, 61)})
-	{
-		const std::vector<float> found = areasInTexture(plane, samples, settings, at.x, at.y);
-		CHECK(*std::min_element(found.begin(), found.end()) >= 0.999F);
-	}
+	const glm::ivec2 at = GENERATE(glm::ivec2(5, 3), glm::ivec2(30, 61));
+	const std::vector<float> found = areasInTexture(plane, samples, settings, at.x, at.y);
+	CHECK(*std::min_element(found.begin(), found.end()) >= 0.999F);
 }

@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bent normals of slices: sums of directions in closed form, planes, a corner, rays, and the CPU compared with OpenGL.
-#include "picture_errors.h"
 #include "small_gbuffers.h"
+#include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
-#include "methods/block.h"
 #include "scene/reference.h"
 #include "scene/tracer.h"
-#include "shade/shade.h"
 
 namespace
 {
 
 ShadeSettings settingsOf(int slices, int steps, double radius_m)
 {
-	ShadeSettings settings;
-	settings.method = ShadeMethod::slices;
-	settings.radius_m = radius_m;
+	ShadeSettings settings = settingsFor(ShadeMethod::slices, radius_m);
 	settings.slices.count = slices;
 	settings.slices.steps = steps;
 	settings.slices.bent = true;
@@ -78,42 +74,39 @@ GBuffer corner(int width, int height)
 TEST_CASE("shade bent: the direction before a share, and the sum of the directions of bits, against integrals", "[shade]")
 {
 	shade_kernels::Kernels kernels;
-	for (const double normal : {-1.5, -1.2, -0.3, 0.0, 0.8, 1.2, 1.5})
+	const double normal = GENERATE(-1.5, -1.2, -0.3, 0.0, 0.8, 1.2, 1.5);
+	const glm::vec3 turn = turnOf(normal);
+	const double most = std::fabs(normal) > 1.25 ? 0.4 : 0.04;
+	const int parts = 64000;
+	std::vector<double> measure{0.0};
+	std::vector<glm::dvec2> moment{glm::dvec2(0.0)};
+	for (int i = 0; i < parts; ++i)
 	{
-		const glm::vec3 turn = turnOf(normal);
-		const double most = std::fabs(normal) > 1.25 ? 0.4 : 0.04;
-		const int parts = 64000;
-		std::vector<double> measure{0.0};
-		std::vector<glm::dvec2> moment{glm::dvec2(0.0)};
-		for (int i = 0; i < parts; ++i)
-		{
-			const double t = normal + kPi * ((i + 0.5) / parts - 0.5);
-			const SinCos at = sinCosOf(t);
-			const double weight = std::cos(t - normal) * std::fabs(at.sin) * kPi / parts;
-			measure.push_back(measure.back() + weight);
-			moment.push_back(moment.back() + weight * glm::dvec2(at.sin, at.cos));
-		}
-		const auto placeOf = [&](double share)
-		{
-			return std::upper_bound(measure.begin(), measure.end() - 1, share * measure.back()) - measure.begin();
-		};
-		for (int bit = 1; bit < 31; ++bit)
-		{
-			const glm::vec2 found = kernels.nookSliceToward(static_cast<float>(bit) / 31.0F, turn);
-			const double expected = normal + kPi * (static_cast<double>(placeOf(bit / 31.0)) / parts - 0.5);
-			CAPTURE(normal, bit);
-			REQUIRE(std::fabs(std::atan2(static_cast<double>(found.x), static_cast<double>(found.y)) - expected) * 180.0 / kPi <
-					most);
-		}
-		for (const auto& [bits, first, end] : {std::tuple{0x7FFFFFFFU, 0, 31}, {0x00FFFF00U, 8, 24}, {0x78000000U, 20, 31}})
-		{
-			const auto from = static_cast<std::size_t>(placeOf(bits == 0x78000000U ? 27.0 / 31.0 : first / 31.0));
-			const std::size_t to = end == 31 ? moment.size() - 1 : static_cast<std::size_t>(placeOf(end / 31.0));
-			const glm::dvec2 expected = moment[to] - moment[bits == 0x7FFFFFFFU ? 0 : from];
-			const glm::vec2 found = kernels.nookSliceSum(bits, first, end, turn);
-			CAPTURE(normal, bits);
-			REQUIRE(glm::distance(glm::dvec2(found), expected) < 0.002);
-		}
+		const double t = normal + kPi * ((i + 0.5) / parts - 0.5);
+		const SinCos at = sinCosOf(t);
+		const double weight = std::cos(t - normal) * std::fabs(at.sin) * kPi / parts;
+		measure.push_back(measure.back() + weight);
+		moment.push_back(moment.back() + weight * glm::dvec2(at.sin, at.cos));
+	}
+	const auto placeOf = [&](double share)
+	{
+		return std::upper_bound(measure.begin(), measure.end() - 1, share * measure.back()) - measure.begin();
+	};
+	for (int bit = 1; bit < 31; ++bit)
+	{
+		const glm::vec2 found = kernels.nookSliceToward(static_cast<float>(bit) / 31.0F, turn);
+		const double expected = normal + kPi * (static_cast<double>(placeOf(bit / 31.0)) / parts - 0.5);
+		CAPTURE(normal, bit);
+		REQUIRE(std::fabs(std::atan2(static_cast<double>(found.x), static_cast<double>(found.y)) - expected) * 180.0 / kPi < most);
+	}
+	for (const auto& [bits, first, end] : {std::tuple{0x7FFFFFFFU, 0, 31}, {0x00FFFF00U, 8, 24}, {0x78000000U, 20, 31}})
+	{
+		const auto from = static_cast<std::size_t>(placeOf(bits == 0x78000000U ? 27.0 / 31.0 : first / 31.0));
+		const std::size_t to = end == 31 ? moment.size() - 1 : static_cast<std::size_t>(placeOf(end / 31.0));
+		const glm::dvec2 expected = moment[to] - moment[bits == 0x7FFFFFFFU ? 0 : from];
+		const glm::vec2 found = kernels.nookSliceSum(bits, first, end, turn);
+		CAPTURE(normal, bits);
+		REQUIRE(glm::distance(glm::dvec2(found), expected) < 0.002);
 	}
 }
 
@@ -150,30 +143,25 @@ TEST_CASE("shade bent: beside a wall without end it leans away by atan(2/pi)", "
 	const GBuffer gbuffer = corner(1024, 1024);
 	ShadeSettings settings = settingsOf(16, 32, 300.0);
 	settings.max_radius_px = 60000.0; // distances in the picture are negligible compared with the reach
-	shade_kernels::Kernels kernels;
-	kernels.nook = blockOf(frameOf(gbuffer), ownSamples(settings), settings);
-	kernels.depths = gbuffer.depth;
-	kernels.normals = gbuffer.normals;
-	for (const int x : {520, 528, 500})
+	shade_kernels::Kernels kernels = kernelsOver(gbuffer, ownSamples(settings), settings);
+	const int x = GENERATE(520, 528, 500);
+	glm::dvec3 sum(0.0);
+	double open = 0.0;
+	for (int i = 0; i < 16; ++i)
 	{
-		glm::dvec3 sum(0.0);
-		double open = 0.0;
-		for (int i = 0; i < 16; ++i)
-		{
-			const glm::vec4 one = kernels.nookSlicesOpen({x / 4 * 4 + i % 4, 512 + i / 4});
-			sum += glm::dvec3(one.x, one.y, one.z) / 16.0;
-			open += static_cast<double>(one.w) / 16.0;
-		}
-		const double s = std::sqrt(0.5);
-		const double away = x < 512 ? -1.0 : 1.0;
-		const glm::dvec3 n(-away * s, 0.0, s);
-		const glm::dvec3 from_wall(away * s, 0.0, s);
-		const glm::dvec3 expected = glm::normalize(2.0 / kPi * from_wall + n);
-		CAPTURE(x, open, sum.x, sum.y, sum.z);
-		CHECK(open == Approx(0.5).margin(0.04));
-		CHECK(degreesBetween(glm::normalize(sum), expected) < 3.0);
-		CHECK(glm::length(sum) == Approx(std::sqrt(1.0 / 9.0 + 4.0 / (9.0 * kPi * kPi))).margin(0.02));
+		const glm::vec4 one = kernels.nookSlicesOpen({x / 4 * 4 + i % 4, 512 + i / 4});
+		sum += glm::dvec3(one.x, one.y, one.z) / 16.0;
+		open += static_cast<double>(one.w) / 16.0;
 	}
+	const double s = std::sqrt(0.5);
+	const double away = x < 512 ? -1.0 : 1.0;
+	const glm::dvec3 n(-away * s, 0.0, s);
+	const glm::dvec3 from_wall(away * s, 0.0, s);
+	const glm::dvec3 expected = glm::normalize(2.0 / kPi * from_wall + n);
+	CAPTURE(x, open, sum.x, sum.y, sum.z);
+	CHECK(open == Approx(0.5).margin(0.04));
+	CHECK(degreesBetween(glm::normalize(sum), expected) < 3.0);
+	CHECK(glm::length(sum) == Approx(std::sqrt(1.0 / 9.0 + 4.0 / (9.0 * kPi * kPi))).margin(0.02));
 }
 
 TEST_CASE("shade bent: nearer to the rays' bent normal than the normal, and visibility as without", "[shade]")
@@ -268,26 +256,24 @@ TEST_CASE("shade slices: a scene a hundred times smaller or larger, with its rad
 {
 	const GBuffer gbuffer = builtinView("courtyard", 160, 90);
 	const Shaded own = drawn(gbuffer, settingsOf(1, 4, 1.0));
-	for (const double scale : {0.01, 100.0})
+	const double scale = GENERATE(0.01, 100.0);
+	GBuffer other = gbuffer;
+	other.view.projection[3][2] *= scale; // near and far
+	for (float& depth : other.depth)
 	{
-		GBuffer other = gbuffer;
-		other.view.projection[3][2] *= scale; // near and far
-		for (float& depth : other.depth)
-		{
-			depth = static_cast<float>(static_cast<double>(depth) * scale);
-		}
-		for (float& error : other.depth_error_m)
-		{
-			error = static_cast<float>(static_cast<double>(error) * scale);
-		}
-		const Shaded scaled = drawn(other, settingsOf(1, 4, scale));
-		checkSamePicture(own.visibility, scaled.visibility);
-		std::size_t off = 0;
-		for (std::size_t i = 0; i < own.bent.size(); ++i)
-		{
-			off += std::isfinite(gbuffer.depth[i]) && degreesBetween(own.bent[i], scaled.bent[i]) > 0.5 ? 1U : 0U;
-		}
-		CAPTURE(scale, off);
-		CHECK(off * 500 <= own.bent.size());
+		depth = static_cast<float>(static_cast<double>(depth) * scale);
 	}
+	for (float& error : other.depth_error_m)
+	{
+		error = static_cast<float>(static_cast<double>(error) * scale);
+	}
+	const Shaded scaled = drawn(other, settingsOf(1, 4, scale));
+	checkSamePicture(own.visibility, scaled.visibility);
+	std::size_t off = 0;
+	for (std::size_t i = 0; i < own.bent.size(); ++i)
+	{
+		off += std::isfinite(gbuffer.depth[i]) && degreesBetween(own.bent[i], scaled.bent[i]) > 0.5 ? 1U : 0U;
+	}
+	CAPTURE(scale, off);
+	CHECK(off * 500 <= own.bent.size());
 }

@@ -5,9 +5,6 @@
 #include "small_samples.h"
 #include "testing.h"
 
-#include "pattern/recipe.h"
-#include "shade/shade.h"
-
 #include <cstdio>
 
 namespace
@@ -139,8 +136,7 @@ TEST_CASE("camera: the same view through every projection and format, within the
 		for (std::size_t m = 0; m < kSampled.size(); ++m)
 		{
 			const ShadeSamples samples = samplesFor(kSampled[m], 9);
-			ShadeSettings settings;
-			settings.method = kSampled[m];
+			ShadeSettings settings = settingsFor(kSampled[m]);
 			const std::vector<float> truth = visibilityOf(gbuffer, samples, settings);
 			for (const int bits : {16, 24, 32})
 			{
@@ -187,8 +183,7 @@ TEST_CASE("camera: no format makes an open plane occlude itself", "[shade]")
 				for (const double tilt : {0.0, 60.0, 80.0})
 				{
 					const GBuffer plane = through(planeAt(convention.projection, 96, 54, tilt), convention, bits);
-					ShadeSettings settings;
-					settings.method = method;
+					ShadeSettings settings = settingsFor(method);
 					settings.beta = 0.0;
 					settings.depth = formatOf(convention, bits);
 					CAPTURE(convention.name, static_cast<int>(method), bits, tilt);
@@ -214,8 +209,7 @@ TEST_CASE("camera: normals of 8 bits", "[shade]")
 			for (const double tilt : {0.0, 20.0, 60.0, 80.0})
 			{
 				const GBuffer plane = withNormals(planeAt(projection, 96, 54, tilt), bits);
-				ShadeSettings settings;
-				settings.method = method;
+				ShadeSettings settings = settingsFor(method);
 				settings.beta = 0.0;
 				settings.normal_bits = bits;
 				CAPTURE(static_cast<int>(method), bits, tilt);
@@ -248,8 +242,7 @@ TEST_CASE("camera: sky is no neighbour", "[shade]")
 	{
 		for (const ShadeMethod method : kSampled)
 		{
-			ShadeSettings settings;
-			settings.method = method;
+			ShadeSettings settings = settingsFor(method);
 			settings.beta = 0.0;
 			settings.depth = formatOf(convention, 24);
 			if (convention.name != std::string("off-centre") && convention.name != std::string("jittered"))
@@ -268,35 +261,13 @@ TEST_CASE("camera: a rectangle of a texture is shaded as the picture alone, what
 	const int x0 = 32;
 	const int y0 = 24;
 	const GBuffer part = cut(whole, x0, y0, 64, 48);
-	std::vector<float> depths(whole.depth.size(), std::numeric_limits<float>::quiet_NaN());
-	std::vector<glm::vec3> normals(whole.depth.size(), glm::vec3(std::numeric_limits<float>::quiet_NaN()));
-	const auto at = [&](int x, int y)
-	{
-		return static_cast<std::size_t>((y0 + y) * 128 + x0 + x);
-	};
-	for (int y = 0; y < 48; ++y)
-	{
-		for (int x = 0; x < 64; ++x)
-		{
-			depths[at(x, y)] = finiteDepths(part)[static_cast<std::size_t>(y * 64 + x)];
-			normals[at(x, y)] = part.normals[static_cast<std::size_t>(y * 64 + x)];
-		}
-	}
 	for (const ShadeMethod method : kSampled)
 	{
 		const ShadeSamples samples = samplesFor(method, 9);
-		ShadeSettings settings;
-		settings.method = method;
+		const ShadeSettings settings = settingsFor(method);
 		const std::vector<float> expected = visibilityOf(part, samples, settings);
-		shade_kernels::Kernels kernels;
-		kernels.nook = blockOf(frameOf(part), samples, settings);
-		kernels.nook.origin = glm::vec2(x0, y0);
-		kernels.nook.first = {x0, y0};
-		kernels.nook.last = {x0 + 63, y0 + 47};
-		kernels.depths = depths;
-		kernels.normals = normals;
-		kernels.samples = samples.samples;
-		kernels.stride = 128;
+		InTexture texture(part, samples, settings, {x0, y0});
+		shade_kernels::Kernels& kernels = texture.kernels;
 		std::size_t other = 0;
 		for (int y = 0; y < 48; ++y)
 		{
@@ -376,8 +347,7 @@ TEST_CASE("camera: figures of formats", "[.figures]")
 			for (std::size_t m = 0; m < kSampled.size(); ++m)
 			{
 				const ShadeSamples samples = samplesFor(kSampled[m], 9);
-				ShadeSettings settings;
-				settings.method = kSampled[m];
+				ShadeSettings settings = settingsFor(kSampled[m]);
 				const std::vector<float> truth = visibilityOf(gbuffer, samples, settings);
 				settings.depth = formatOf(convention, bits);
 				const Difference difference = differenceOf(visibilityOf(coarse, samples, settings), truth);
@@ -397,8 +367,7 @@ TEST_CASE("camera: figures of formats", "[.figures]")
 		for (std::size_t m = 0; m < kSampled.size(); ++m)
 		{
 			const ShadeSamples samples = samplesFor(kSampled[m], 9);
-			ShadeSettings settings;
-			settings.method = kSampled[m];
+			ShadeSettings settings = settingsFor(kSampled[m]);
 			const Difference without =
 				differenceOf(visibilityOf(withNormals(gbuffer, bits), samples, settings), visibilityOf(gbuffer, samples, settings));
 			settings.beta = 0.0;

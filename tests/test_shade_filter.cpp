@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Filters and half resolution: what they must preserve, what they must remove, and the CPU compared with OpenGL.
-#include "picture_errors.h"
+#include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
-#include "methods/block.h"
 #include "methods/passes.h"
-#include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "shade/run_passes.h"
-#include "shade/shade.h"
 
 namespace
 {
@@ -91,57 +88,26 @@ template <class Of> std::vector<float> rebuilt(const GBuffer& gbuffer, const Sha
 	return pictures[plan.passes.back().picture].front().values;
 }
 
-// A wall across the view at depth 5, and from the middle to the right another one, `step_m` nearer.
-GBuffer stepView(int size, double step_m)
-{
-	GBuffer gbuffer = planeAt(projectionOf(lensOf(0.0), 1.0), size, size, 0.0);
-	for (int y = 0; y < size; ++y)
-	{
-		for (int x = size / 2; x < size; ++x)
-		{
-			gbuffer.depth[static_cast<std::size_t>(y * size + x)] -= static_cast<float>(step_m);
-		}
-	}
-	return gbuffer;
-}
-
 } // namespace
 
 TEST_CASE("shade filter: a constant stays a constant, and sky stays open", "[shade]")
 {
 	const GBuffer gbuffer = builtinView("courtyard", 97, 55);
-	for (const Rebuilding& rebuilding : kRebuildings)
+	const Rebuilding rebuilding = GENERATE(from_range(kRebuildings));
+	const std::vector<float> v = rebuilt(gbuffer, settingsOf(rebuilding, 0.5), [](glm::ivec2) { return 0.375F; });
+	for (std::size_t i = 0; i < v.size(); ++i)
 	{
-		const std::vector<float> v = rebuilt(gbuffer, settingsOf(rebuilding, 0.5), [](glm::ivec2) { return 0.375F; });
-		for (std::size_t i = 0; i < v.size(); ++i)
-		{
 
-			REQUIRE(v[i] == Approx(std::isfinite(gbuffer.depth[i]) ? 0.375F : 1.0F).margin(1e-6));
-		}
+		REQUIRE(v[i] == Approx(std::isfinite(gbuffer.depth[i]) ? 0.375F : 1.0F).margin(1e-6));
 	}
 }
 
 TEST_CASE("shade filter: an open plane stays 1 at any slope, field of view and projection", "[shade]")
 {
-	const ShadeSamples samples = linesOf(TileKind::random);
-	for (const Rebuilding& rebuilding : kRebuildings)
-	{
-		for (const double fov : {0.0, 30.0, 60.0, 100.0})
-		{
-			for (const double tilt : {0.0, 60.0, 80.0})
-			{
-				const GBuffer gbuffer = planeAt(projectionOf(lensOf(fov), 16.0 / 9.0), 64, 36, tilt);
-				float least = 1.0F;
-				for (const float v : shadeOnCpu(gbuffer, samples, settingsOf(rebuilding, 0.5), {}).visibility)
-				{
-					least = std::min(least, v);
-					REQUIRE(v <= 1.0F);
-				}
-				CAPTURE(static_cast<int>(rebuilding.filter), rebuilding.half, fov, tilt);
-				CHECK(least >= 1.0F - 1.0F / 255.0F);
-			}
-		}
-	}
+	static const ShadeSamples samples = linesOf(TileKind::random);
+	const Rebuilding rebuilding = GENERATE(from_range(kRebuildings));
+	CAPTURE(static_cast<int>(rebuilding.filter), rebuilding.half);
+	checkOpen(visibilityOf(eachPlane(64, 36), samples, settingsOf(rebuilding, 0.5)));
 }
 
 TEST_CASE("shade filter: a plane is one surface at any slope", "[shade]")
@@ -151,25 +117,21 @@ TEST_CASE("shade filter: a plane is one surface at any slope", "[shade]")
 	{
 		return static_cast<float>(pixel.y % 4 * 4 + pixel.x % 4) / 15.0F;
 	};
-	for (const double fov : {0.0, 60.0})
+	const double fov = GENERATE(0.0, 60.0);
+	const double tilt = GENERATE(0.0, 60.0, 80.0);
+	const GBuffer gbuffer = planeAt(projectionOf(lensOf(fov), 1.0), 64, 64, tilt);
+	const std::vector<float> v = rebuilt(gbuffer, settingsOf({ShadeFilter::window, 13, false}, 0.1), variant);
+	for (int y = 4; y < 60; ++y)
 	{
-		for (const double tilt : {0.0, 60.0, 80.0})
+		for (int x = 4; x < 60; ++x)
 		{
-			const GBuffer gbuffer = planeAt(projectionOf(lensOf(fov), 1.0), 64, 64, tilt);
-			const std::vector<float> v = rebuilt(gbuffer, settingsOf({ShadeFilter::window, 13, false}, 0.1), variant);
-			for (int y = 4; y < 60; ++y)
+			const auto seen = [&](int there_x, int there_y)
 			{
-				for (int x = 4; x < 60; ++x)
-				{
-					const auto seen = [&](int there_x, int there_y)
-					{
-						return std::isfinite(gbuffer.depth[static_cast<std::size_t>(there_y * 64 + there_x)]);
-					};
-					if (seen(x - 3, y - 3) && seen(x + 3, y - 3) && seen(x - 3, y + 3) && seen(x + 3, y + 3))
-					{
-						REQUIRE(v[static_cast<std::size_t>(y * 64 + x)] == Approx(0.5).margin(1e-5));
-					}
-				}
+				return std::isfinite(gbuffer.depth[static_cast<std::size_t>(there_y * 64 + there_x)]);
+			};
+			if (seen(x - 3, y - 3) && seen(x + 3, y - 3) && seen(x - 3, y + 3) && seen(x + 3, y + 3))
+			{
+				REQUIRE(v[static_cast<std::size_t>(y * 64 + x)] == Approx(0.5).margin(1e-5));
 			}
 		}
 	}
@@ -191,7 +153,7 @@ TEST_CASE("shade filter: nothing bleeds over a step, a corner or into the sky", 
 	{
 		return pixel.x < 24 ? 0.25F : 0.75F;
 	};
-	for (const GBuffer& gbuffer : {stepView(48, 0.06), stepView(48, 3.0), corner, open})
+	for (const GBuffer& gbuffer : {stepOf(48, 0.06), stepOf(48, 3.0), corner, open})
 	{
 		for (const Rebuilding& rebuilding : kRebuildings)
 		{
@@ -209,7 +171,7 @@ TEST_CASE("shade filter: nothing bleeds over a step, a corner or into the sky", 
 
 TEST_CASE("shade filter: the window shows the mean of the variants on a wall beside an occluder", "[shade]")
 {
-	const GBuffer gbuffer = stepView(192, 0.4);
+	const GBuffer gbuffer = stepOf(192, 0.4);
 	const PatternTile tile = nineLines(TileKind::points);
 	ShadeSettings settings = settingsOf({ShadeFilter::none, 13, false}, 1.0);
 	std::vector<float> mean(gbuffer.depth.size());
@@ -222,9 +184,9 @@ TEST_CASE("shade filter: the window shows the mean of the variants on a wall bes
 		}
 	}
 	const ShadeSamples samples = samplesOf(ShadeMethod::vo_line, tile.variants);
-	const double noisy = rmseOf(shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility, mean);
+	const double noisy = rmseOf(visibilityOf(gbuffer, samples, settings), mean);
 	settings.filter = ShadeFilter::window;
-	const double filtered = rmseOf(shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility, mean);
+	const double filtered = rmseOf(visibilityOf(gbuffer, samples, settings), mean);
 	CAPTURE(noisy, filtered);
 	CHECK(filtered < 0.3 * noisy);
 	CHECK(filtered < 0.01);
@@ -232,20 +194,11 @@ TEST_CASE("shade filter: the window shows the mean of the variants on a wall bes
 
 TEST_CASE("shade filter: OpenGL agrees with the CPU", "[shade]")
 {
-	const ShadeSamples samples = linesOf(TileKind::random);
-	for (const std::string name : {"courtyard", "suburb", "nulls"})
-	{
-		const GBuffer gbuffer = builtinView(name, 161, 91);
-		for (const Rebuilding& rebuilding : kRebuildings)
-		{
-			const ShadeSettings settings = settingsOf(rebuilding, 0.7);
-			const Shaded cpu = shadeOnCpu(gbuffer, samples, settings, {2, {}});
-			const Shaded gl = shadeOnGl(gbuffer, samples, settings);
-			REQUIRE(cpu.passes.size() == gl.passes.size());
-			CAPTURE(name, static_cast<int>(rebuilding.filter), rebuilding.half);
-			checkSamePicture(cpu.visibility, gl.visibility);
-		}
-	}
+	static const ShadeSamples samples = linesOf(TileKind::random);
+	const auto name = GENERATE(as<std::string>{}, "courtyard", "suburb", "nulls");
+	const Rebuilding rebuilding = GENERATE(from_range(kRebuildings));
+	CAPTURE(name, static_cast<int>(rebuilding.filter), rebuilding.half);
+	checkOnGl(builtinView(name, 161, 91), samples, settingsOf(rebuilding, 0.7));
 }
 
 TEST_CASE("shade filter: half resolution agrees with full", "[shade]")
@@ -258,7 +211,7 @@ TEST_CASE("shade filter: half resolution agrees with full", "[shade]")
 		const GBuffer gbuffer = builtinView(name, width, height);
 		const auto visibility = [&](bool half)
 		{
-			return shadeOnCpu(gbuffer, samples, settingsOf({filter, 5, half}, 1.0), {2, {}}).visibility;
+			return visibilityOf(gbuffer, samples, settingsOf({filter, 5, half}, 1.0));
 		};
 		return rmseOf(visibility(false), visibility(true));
 	};
@@ -275,7 +228,7 @@ TEST_CASE("shade filter: on the method's own terms an optimised tile leaves less
 	Recipe recipe{.domain = Domain::disk, .count = 400, .method = Method::vogel};
 	const auto with = [&](const ShadeSamples& samples, ShadeFilter filter)
 	{
-		return shadeOnCpu(gbuffer, samples, settingsOf({filter, 13, false}, 1.0), {2, {}}).visibility;
+		return visibilityOf(gbuffer, samples, settingsOf({filter, 13, false}, 1.0));
 	};
 	const std::vector<float> truth = with(samplesOf(ShadeMethod::vo_line, {generatePattern(recipe)}), ShadeFilter::none);
 	const ShadeSamples tile = linesOf(TileKind::points);

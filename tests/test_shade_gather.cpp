@@ -99,14 +99,12 @@ Errors errorsOf(const std::string& name, int width, int height)
 
 TEST_CASE("shade gather: four samples a pixel, nearer to visibility at each than the pixel's own", "[shade]")
 {
-	for (const std::string name : {"courtyard", "suburb", "cornell"})
-	{
-		const Errors errors = errorsOf(name, 160, 90);
-		CAPTURE(name, errors.own, errors.gathered);
-		WARN(name << ": RMSE of the pixel's own visibility " << errors.own << ", gathered " << errors.gathered);
-		CHECK(errors.own > 0.005);
-		CHECK(errors.gathered < 0.7 * errors.own);
-	}
+	const auto name = GENERATE(as<std::string>{}, "courtyard", "suburb", "cornell");
+	const Errors errors = errorsOf(name, 160, 90);
+	CAPTURE(name, errors.own, errors.gathered);
+	WARN(name << ": RMSE of the pixel's own visibility " << errors.own << ", gathered " << errors.gathered);
+	CHECK(errors.own > 0.005);
+	CHECK(errors.gathered < 0.7 * errors.own);
 }
 
 TEST_CASE("shade gather: a sample takes the visibility of its own side of an edge", "[shade]")

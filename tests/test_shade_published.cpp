@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Published methods: closed forms, results on open planes, and the CPU compared with OpenGL.
-#include "picture_errors.h"
-#include "small_gbuffers.h"
+#include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
-#include "methods/block.h"
 #include "methods/passes.h"
-#include "pattern/recipe.h"
 #include "pattern/tile.h"
-#include "shade/shade.h"
 
 namespace
 {
 
+constexpr std::array kAll{ShadeMethod::vo_line, ShadeMethod::crytek, ShadeMethod::volumetric, ShadeMethod::hbao,
+						  ShadeMethod::sao,     ShadeMethod::gtao,   ShadeMethod::bitmask};
 constexpr std::array kPublished{ShadeMethod::crytek, ShadeMethod::volumetric, ShadeMethod::hbao,
 								ShadeMethod::sao,    ShadeMethod::gtao,       ShadeMethod::bitmask};
 
@@ -39,32 +37,9 @@ ShadeSamples samplesFor(const ShadeSettings& settings)
 	return samplesOf(settings.method, generateTile(patternFor(settings.method, count), tile, {}).variants);
 }
 
-ShadeSettings settingsFor(ShadeMethod method, double radius_m)
-{
-	ShadeSettings settings;
-	settings.method = method;
-	settings.radius_m = radius_m;
-	return settings;
-}
-
 std::vector<float> drawn(const GBuffer& gbuffer, const ShadeSettings& settings)
 {
-	return shadeOnCpu(gbuffer, samplesFor(settings), settings, {2, {}}).visibility;
-}
-
-// A floor across a parallel view 10 m below the camera, 6 m wide; `height(x)` of objects on it, in metres.
-template <class Height> GBuffer floorWith(int size, Height height)
-{
-	GBuffer gbuffer{size, size, {glm::dmat4(1.0), projectionOf(lensOf(0.0), 1.0)}, 0.0, {}, {}};
-	for (int y = 0; y < size; ++y)
-	{
-		for (int x = 0; x < size; ++x)
-		{
-			gbuffer.depth.push_back(static_cast<float>(10.0 - height((x + 0.5) * 6.0 / size - 3.0)));
-			gbuffer.normals.emplace_back(0.0F, 0.0F, 1.0F);
-		}
-	}
-	return gbuffer;
+	return visibilityOf(gbuffer, samplesFor(settings), settings);
 }
 
 // The method alone: mean of sixteen pixels in a column, covering all variants of a window's column, whose centres are nearest to
@@ -179,12 +154,10 @@ TEST_CASE("shade published: the tangent sphere beside a wall, against the volume
 	const ShadeSettings settings = settingsFor(ShadeMethod::volumetric, 1.0);
 	const ShadeSamples samples = samplesOf(settings.method, {patternFor(settings.method, 256)});
 	const GBuffer gbuffer = floorWith(size, [](double x) { return x > 1.0 ? 5.0 : 0.0; });
-	for (const double distance : {0.1, 0.25, 0.4, 0.6})
-	{
-		const double c = std::min(distance / 0.5, 1.0);
-		CAPTURE(distance);
-		CHECK(valueAt(gbuffer, samples, settings, 1.0 - distance) == Approx((1.0 + c) * (1.0 + c) * (2.0 - c) / 4.0).margin(0.01));
-	}
+	const double distance = GENERATE(0.1, 0.25, 0.4, 0.6);
+	const double c = std::min(distance / 0.5, 1.0);
+	CAPTURE(distance);
+	CHECK(valueAt(gbuffer, samples, settings, 1.0 - distance) == Approx((1.0 + c) * (1.0 + c) * (2.0 - c) / 4.0).margin(0.01));
 }
 
 TEST_CASE("shade published: horizons beside a wall, against their integral", "[shade]")
@@ -192,36 +165,30 @@ TEST_CASE("shade published: horizons beside a wall, against their integral", "[s
 	const int size = 1201;
 	const double height = 0.4;
 	const GBuffer gbuffer = floorWith(size, [=](double x) { return x > 1.0 ? height : 0.0; });
-	for (const double bias_deg : {0.0, 30.0})
+	const double bias_deg = GENERATE(0.0, 30.0);
+	const double strength = GENERATE(1.0, 1.5);
+	ShadeSettings settings = settingsFor(ShadeMethod::hbao, 1.0);
+	settings.own["--hbao-directions"] = 64;
+	settings.own["--hbao-steps"] = 64;
+	settings.own["--hbao-angle-bias"] = bias_deg;
+	settings.strength = strength;
+	const ShadeSamples samples = ownSamples(settings);
+	const double distance = GENERATE(0.2, 0.5, 0.8);
+	// The first point of the wall's top along each direction is the highest.
+	const double least = sinCosOf(bias_deg * kPi / 180.0).sin;
+	double sum = 0.0;
+	const int parts = 4096;
+	for (int i = 0; i < parts; ++i)
 	{
-		for (const double strength : {1.0, 1.5})
+		const double run = distance / std::max(1e-9, sinCosOf(2.0 * kPi * (i + 0.5) / parts).cos);
+		const double square = run * run + height * height;
+		if (run > 0.0 && square < 1.0)
 		{
-			ShadeSettings settings = settingsFor(ShadeMethod::hbao, 1.0);
-			settings.own["--hbao-directions"] = 64;
-			settings.own["--hbao-steps"] = 64;
-			settings.own["--hbao-angle-bias"] = bias_deg;
-			settings.strength = strength;
-			const ShadeSamples samples = ownSamples(settings);
-			for (const double distance : {0.2, 0.5, 0.8})
-			{
-				// The first point of the wall's top along each direction is the highest.
-				const double least = sinCosOf(bias_deg * kPi / 180.0).sin;
-				double sum = 0.0;
-				const int parts = 4096;
-				for (int i = 0; i < parts; ++i)
-				{
-					const double run = distance / std::max(1e-9, sinCosOf(2.0 * kPi * (i + 0.5) / parts).cos);
-					const double square = run * run + height * height;
-					if (run > 0.0 && square < 1.0)
-					{
-						sum += std::max(0.0, height / std::sqrt(square) - least) * (1.0 - square) / parts;
-					}
-				}
-				CAPTURE(bias_deg, strength, distance);
-				CHECK(valueAt(gbuffer, samples, settings, 1.0 - distance) == Approx(1.0 - strength * sum).margin(0.01));
-			}
+			sum += std::max(0.0, height / std::sqrt(square) - least) * (1.0 - square) / parts;
 		}
 	}
+	CAPTURE(bias_deg, strength, distance);
+	CHECK(valueAt(gbuffer, samples, settings, 1.0 - distance) == Approx(1.0 - strength * sum).margin(0.01));
 }
 
 TEST_CASE("shade published: the spiral beside a wall, against its integral", "[shade]")
@@ -234,67 +201,24 @@ TEST_CASE("shade published: the spiral beside a wall, against its integral", "[s
 	settings.own["--sao-turns"] = 89;
 	settings.own["--sao-levels"] = 0;
 	const ShadeSamples samples = ownSamples(settings);
-	for (const double distance : {0.2, 0.5, 0.8})
+	const double distance = GENERATE(0.2, 0.5, 0.8);
+	double sum = 0.0;
+	const int parts = 512;
+	for (int i = 0; i < parts; ++i)
 	{
-		double sum = 0.0;
-		const int parts = 512;
-		for (int i = 0; i < parts; ++i)
+		for (int j = 0; j < parts; ++j)
 		{
-			for (int j = 0; j < parts; ++j)
+			const double run = (i + 0.5) / parts;
+			const double square = run * run + height * height;
+			if (run * sinCosOf(2.0 * kPi * (j + 0.5) / parts).cos > distance && square < 1.0)
 			{
-				const double run = (i + 0.5) / parts;
-				const double square = run * run + height * height;
-				if (run * sinCosOf(2.0 * kPi * (j + 0.5) / parts).cos > distance && square < 1.0)
-				{
-					const double f = 1.0 - square;
-					sum += f * f * f * (height - 0.012) / (square + 0.01) / (parts * parts);
-				}
+				const double f = 1.0 - square;
+				sum += f * f * f * (height - 0.012) / (square + 0.01) / (parts * parts);
 			}
 		}
-		CAPTURE(distance);
-		CHECK(valueAt(gbuffer, samples, settings, 1.0 - distance) == Approx(1.0 - 5.0 * sum).margin(0.02));
 	}
-}
-
-TEST_CASE("shade published: coarser depths are depths of their own pixels", "[shade]")
-{
-	const GBuffer gbuffer = builtinView("courtyard", 53, 37);
-	const ShadeSettings settings = settingsFor(ShadeMethod::sao, 1.0);
-	const ShadePlan plan = planOf(frameOf(gbuffer), ownSamples(settings), settings);
-	REQUIRE(plan.pictures[0].levels == 5);
-	shade_kernels::Kernels kernels;
-	const std::vector<float> depths = finiteDepths(gbuffer);
-	kernels.depths = depths;
-	std::vector<PicturePlane> planes(5);
-	for (int level = 1; level <= 5; ++level)
-	{
-		PicturePlane& plane = planes[static_cast<std::size_t>(level - 1)];
-		plane.width = std::max(1, 53 >> level);
-		plane.height = std::max(1, 37 >> level);
-		plane.values.resize(plane.index(0, plane.height));
-		kernels.levels = planes;
-		kernels.nook = plan.passes[static_cast<std::size_t>(level - 1)].block;
-		std::size_t corners = 0;
-		for (int y = 0; y < plane.height; ++y)
-		{
-			for (int x = 0; x < plane.width; ++x)
-			{
-				const float depth = kernels.nookCoarser({x, y});
-				plane.values[plane.index(x, y)] = depth;
-				bool found = false;
-				for (int v = y << level; v < (y + 1) << level; ++v)
-				{
-					for (int u = x << level; u < (x + 1) << level; ++u)
-					{
-						found = found || depths[static_cast<std::size_t>(v * 53 + u)] == depth;
-					}
-				}
-				REQUIRE(found);
-				corners += depths[static_cast<std::size_t>((y << level) * 53 + (x << level))] == depth ? 1U : 0U;
-			}
-		}
-		CHECK((level > 3 || static_cast<int>(corners) < plane.width * plane.height)); // not only the upper left ones
-	}
+	CAPTURE(distance);
+	CHECK(valueAt(gbuffer, samples, settings, 1.0 - distance) == Approx(1.0 - 5.0 * sum).margin(0.02));
 }
 
 TEST_CASE("shade published: coarser depths are used beyond sixteen pixels alone", "[shade]")
@@ -319,20 +243,16 @@ TEST_CASE("shade published: sky is never a neighbour", "[shade]")
 		gbuffer.depth[i] = std::numeric_limits<float>::infinity();
 		gbuffer.normals[i] = glm::vec3(0.0F);
 	}
-	for (const ShadeMethod method : kPublished)
+	const ShadeMethod method = GENERATE(from_range(kPublished));
+	const bool half = GENERATE(false, true);
+	ShadeSettings settings = settingsFor(method, 1.0);
+	settings.half_resolution = half;
+	const std::vector<float> picture = drawn(gbuffer, settings);
+	for (std::size_t i = 0; i < picture.size(); ++i)
 	{
-		for (const bool half : {false, true})
-		{
-			ShadeSettings settings = settingsFor(method, 1.0);
-			settings.half_resolution = half;
-			const std::vector<float> picture = drawn(gbuffer, settings);
-			for (std::size_t i = 0; i < picture.size(); ++i)
-			{
-				CAPTURE(static_cast<int>(method), half, i);
-				REQUIRE(picture[i] >= (method == ShadeMethod::crytek ? 0.5F - 1e-5F : 1.0F - 1e-5F));
-				REQUIRE((std::isfinite(gbuffer.depth[i]) || picture[i] == 1.0F));
-			}
-		}
+		CAPTURE(static_cast<int>(method), half, i);
+		REQUIRE(picture[i] >= (method == ShadeMethod::crytek ? 0.5F - 1e-5F : 1.0F - 1e-5F));
+		REQUIRE((std::isfinite(gbuffer.depth[i]) || picture[i] == 1.0F));
 	}
 }
 
@@ -344,12 +264,17 @@ TEST_CASE("shade published: the same picture through other projections of the sa
 	glm::dmat4 reversed = plain.projection;
 	reversed[2][2] = 0.0; // infinite and reversed: z from 1 at the near plane to 0
 	reversed[3][2] = 0.1;
-	const GBuffer one = castGBuffer(tracer, plain, 64, 64, NormalKind::geometric, {});
-	const GBuffer other = castGBuffer(tracer, {plain.camera_from_world, reversed}, 64, 64, NormalKind::geometric, {});
-	for (const ShadeMethod method : kPublished)
+	const auto through = [&](const glm::dmat4& projection)
 	{
-		CHECK(drawn(one, settingsFor(method, 0.5)) == drawn(other, settingsFor(method, 0.5)));
-	}
+		return castGBuffer(tracer, {plain.camera_from_world, projection}, 64, 64, NormalKind::geometric, {});
+	};
+	const ShadeMethod method = GENERATE(from_range(kAll));
+	const ShadeSettings settings = settingsFor(method);
+	CHECK(drawn(through(plain.projection), settings) ==
+		  drawn(through(reversed), settings)); // neither rays nor kernels use the z row
+	glm::dmat4 skewed = plain.projection;
+	skewed[1][0] = 0.1;
+	CHECK_THROWS_AS(drawn(through(skewed), settings), Error);
 	// A parallel view compared with one from 3 km away through an equally narrow lens, and with an off-centre part of a wider one.
 	const GBuffer parallel = floorWith(128, [](double x) { return x > 1.0 ? 0.4 : 0.0; });
 	GBuffer far = parallel;
@@ -359,55 +284,33 @@ TEST_CASE("shade published: the same picture through other projections of the sa
 	{
 		depth += 2990.0F;
 	}
-	for (const ShadeMethod method : kPublished)
-	{
-		const std::vector<float> a = drawn(parallel, settingsFor(method, 0.73));
-		const std::vector<float> b = drawn(far, settingsFor(method, 0.73));
-		double sum = 0.0;
-		for (std::size_t i = 0; i < a.size(); ++i)
-		{
-			sum += static_cast<double>(std::fabs(a[i] - b[i]));
-		}
-		CAPTURE(static_cast<int>(method));
-		CHECK(sum / static_cast<double>(a.size()) < 2e-3);
-	}
+	INFO(nameOf(method));
+	CHECK(differenceOf(drawn(parallel, settingsFor(method, 0.73)), drawn(far, settingsFor(method, 0.73))).mean < 2e-3);
 }
 
 TEST_CASE("shade published: OpenGL agrees with the CPU", "[shade]")
 {
-	for (const std::string name : {"courtyard", "suburb", "nulls"})
-	{
-		const GBuffer gbuffer = builtinView(name, 160, 90);
-		for (const ShadeMethod method : kPublished)
-		{
-			ShadeSettings settings = settingsFor(method, 1.0);
-			settings.half_resolution = name == "suburb";
-			const ShadeSamples samples = samplesFor(settings);
-			const Shaded cpu = shadeOnCpu(gbuffer, samples, settings, {2, {}});
-			const Shaded gl = shadeOnGl(gbuffer, samples, settings);
-			CAPTURE(name, static_cast<int>(method), gl.renderer);
-			checkSamePicture(cpu.visibility, gl.visibility);
-		}
-	}
+	const auto name = GENERATE(as<std::string>{}, "courtyard", "suburb", "nulls");
+	const ShadeMethod method = GENERATE(from_range(kPublished));
+	ShadeSettings settings = settingsFor(method, 1.0);
+	settings.half_resolution = name == "suburb";
+	INFO(name);
+	checkOnGl(builtinView(name, 160, 90), samplesFor(settings), settings);
 }
 
 TEST_CASE("shade published: pictures of a few pixels", "[shade]")
 {
-	for (const ShadeMethod method : kPublished)
+	const ShadeMethod method = GENERATE(from_range(kPublished));
+	const int size = GENERATE(1, 2, 3);
+	const GBuffer gbuffer = floorWith(size, [](double x) { return x > 0.0 ? 0.3 : 0.0; });
+	const ShadeSettings settings = settingsFor(method, 4.0);
+	const ShadeSamples samples = samplesFor(settings);
+	const std::vector<float> cpu = shadeOnCpu(gbuffer, samples, settings, {}).visibility;
+	const std::vector<float> gl = shadeOnGl(gbuffer, samples, settings).visibility;
+	for (std::size_t i = 0; i < cpu.size(); ++i)
 	{
-		for (const int size : {1, 2, 3})
-		{
-			const GBuffer gbuffer = floorWith(size, [](double x) { return x > 0.0 ? 0.3 : 0.0; });
-			const ShadeSettings settings = settingsFor(method, 4.0);
-			const ShadeSamples samples = samplesFor(settings);
-			const std::vector<float> cpu = shadeOnCpu(gbuffer, samples, settings, {}).visibility;
-			const std::vector<float> gl = shadeOnGl(gbuffer, samples, settings).visibility;
-			for (std::size_t i = 0; i < cpu.size(); ++i)
-			{
-				REQUIRE(cpu[i] >= 0.0F);
-				REQUIRE(cpu[i] <= 1.0F);
-				REQUIRE(gl[i] == Approx(cpu[i]).margin(1e-5));
-			}
-		}
+		REQUIRE(cpu[i] >= 0.0F);
+		REQUIRE(cpu[i] <= 1.0F);
+		REQUIRE(gl[i] == Approx(cpu[i]).margin(1e-5));
 	}
 }

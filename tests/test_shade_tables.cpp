@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // StatVO's tables: their precision, agreement of all ways to compute them, and the effect of skipping layers.
-#include "picture_errors.h"
 #include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
-#include "core/random.h"
 #include "shade/gl_context.h"
 #include "shade/run_passes.h"
-#include "shade/shade.h"
 
 #include <epoxy/gl.h>
 
@@ -168,25 +165,23 @@ TEST_CASE("statvo: means of rectangles in 3840 x 2160 are right to 1e-4 of the d
 TEST_CASE("statvo: tables by scans and by passes of eight entries are the same", "[shade][statvo]")
 {
 	const GBuffer gbuffer = builtinView("courtyard", 131, 73);
-	for (const int cell : {1, 2, 4})
+	const int cell = GENERATE(1, 2, 4);
+	ShadeSettings settings = statVo(4, cell);
+	const std::vector<Planes> scans = picturesOf(gbuffer, settings, "slopes");
+	settings.statvo.builder = TableBuilder::fragments;
+	const std::vector<Planes> fragments = picturesOf(gbuffer, settings, "slopes");
+	REQUIRE(scans.size() == fragments.size());
+	std::size_t tables = 0;
+	for (std::size_t i = 0; i < scans.size(); ++i)
 	{
-		ShadeSettings settings = statVo(4, cell);
-		const std::vector<Planes> scans = picturesOf(gbuffer, settings, "slopes");
-		settings.statvo.builder = TableBuilder::fragments;
-		const std::vector<Planes> fragments = picturesOf(gbuffer, settings, "slopes");
-		REQUIRE(scans.size() == fragments.size());
-		std::size_t tables = 0;
-		for (std::size_t i = 0; i < scans.size(); ++i)
+		for (std::size_t j = 0; scans[i].size() == 4 && j < 4; ++j) // otherwise scratch
 		{
-			for (std::size_t j = 0; scans[i].size() == 4 && j < 4; ++j) // otherwise scratch
-			{
-				CHECK(scans[i][j].counts == fragments[i][j].counts);
-				CHECK(scans[i][j].counts.back() > 0);
-				tables += 1;
-			}
+			CHECK(scans[i][j].counts == fragments[i][j].counts);
+			CHECK(scans[i][j].counts.back() > 0);
+			tables += 1;
 		}
-		CHECK(tables == 4);
 	}
+	CHECK(tables == 4);
 }
 
 TEST_CASE("statvo: four leaves make the whole, and each is nearer than its sibling", "[shade][statvo]")
@@ -285,21 +280,9 @@ TEST_CASE("statvo: leaving out layers changes nothing that shows, and leaves out
 // Not in the suite: takes half a minute.
 TEST_CASE("statvo: an open plane in 1920 x 1080 reads 1", "[.][statvo-full]")
 {
-	for (const double fov : {0.0, 30.0, 60.0, 100.0})
-	{
-		for (const double tilt : {0.0, 30.0, 60.0, 80.0})
-		{
-			const GBuffer gbuffer = planeAt(projectionOf(lensOf(fov), 16.0 / 9.0), 1920, 1080, tilt);
-			for (const ShadeSettings& settings : {statVo(4), statVo(4, 4, true)})
-			{
-				const std::vector<float> v = shadeOnCpu(gbuffer, ownSamples(settings), settings, {2, {}}).visibility;
-				const float least = *std::min_element(v.begin(), v.end());
-				WARN("field of view " << fov << ", turned by " << tilt << ", cells of " << settings.statvo.cell_px << ": "
-									  << least);
-				CHECK(least >= 1.0F - 1.0F / 255.0F);
-			}
-		}
-	}
+	const std::vector<float> visibility = visibilityOf(eachPlane(1920, 1080), GENERATE(statVo(4), statVo(4, 4, true)));
+	WARN("least " << *std::min_element(visibility.begin(), visibility.end()));
+	checkOpen(visibility);
 }
 
 TEST_CASE("statvo: OpenGL agrees with the CPU, by compute shaders or fragments", "[shade][statvo]")
@@ -310,15 +293,10 @@ TEST_CASE("statvo: OpenGL agrees with the CPU, by compute shaders or fragments",
 	all[3].statvo.layering = StatVoLayering::uniform;
 	for (const std::string name : {"courtyard", "suburb", "nulls"})
 	{
-		const GBuffer gbuffer = builtinView(name, 160, 90);
 		for (std::size_t i = 0; i < all.size(); ++i)
 		{
-			ShadeSettings settings = all[i];
-			const ShadeSamples samples = ownSamples(settings);
-			const std::vector<float> cpu = shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
-			const std::vector<float> gl = shadeOnGl(gbuffer, samples, settings).visibility;
 			CAPTURE(name, i);
-			checkSamePicture(cpu, gl);
+			checkOnGl(builtinView(name, 160, 90), ownSamples(all[i]), all[i]);
 		}
 	}
 	const GBuffer gbuffer = builtinView("suburb", 160, 90);

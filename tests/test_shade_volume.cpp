@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volumetric obscurance with further features: areas, thickness, falloff, two radii, pairs, bands.
-#include "picture_errors.h"
 #include "small_samples.h"
 #include "small_views.h"
 #include "testing.h"
 
-#include "core/random.h"
-#include "methods/block.h"
-#include "methods/kernels.h"
-#include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "scene/reference.h"
-#include "shade/shade.h"
 
 namespace
 {
@@ -41,20 +35,6 @@ double openBySteps(double reach, double end, double front, double thick, bool qu
 		sum += open ? (quadratic ? reach * reach - z * z : 1.0) : 0.0;
 	}
 	return sum * (end + reach) / steps;
-}
-
-// A wall across the view at a depth of 5 m, and another one in front of it on the right half of the picture.
-GBuffer wallsAt(int size, float nearer_m)
-{
-	GBuffer gbuffer = planeAt(projectionOf(lensOf(0.0), 1.0), size, size, 0.0);
-	for (int y = 0; y < size; ++y)
-	{
-		for (int x = size / 2; x < size; ++x)
-		{
-			gbuffer.depth[static_cast<std::size_t>(y * size + x)] -= nearer_m;
-		}
-	}
-	return gbuffer;
 }
 
 } // namespace
@@ -146,29 +126,24 @@ TEST_CASE("shade: moments of depth keep their digits far away, and never a negat
 	}
 }
 
-TEST_CASE("shade: areas read 1 on an open plane, and come closer to the depth buffer's open share than few lines", "[shade]")
+TEST_CASE("shade: areas read 1 on an open plane", "[shade]")
 {
-	ShadeSettings settings;
-	settings.method = ShadeMethod::vo_area;
-	const ShadeSamples areas = samplesOf(settings.method, {generatePattern(diskRecipe(9))});
-	for (const double fov : {0.0, 60.0, 100.0})
-	{
-		for (const double tilt : {0.0, 45.0, 80.0})
-		{
-			const GBuffer gbuffer = planeAt(projectionOf(lensOf(fov), 16.0 / 9.0), 96, 54, tilt);
-			const std::vector<float> visibility = visibilityOf(gbuffer, areas, settings);
-			CAPTURE(fov, tilt);
-			CHECK(*std::min_element(visibility.begin(), visibility.end()) >= 1.0F - 1.0F / 255.0F);
-		}
-	}
+	ShadeSettings settings = settingsFor(ShadeMethod::vo_area);
+	checkOpen(visibilityOf(eachPlane(96, 54), samplesOf(settings.method, {generatePattern(diskRecipe(9))}), settings));
+}
+
+TEST_CASE("shade: areas come closer to the depth buffer's open share than few lines", "[shade]")
+{
 	const GBuffer gbuffer = builtinView("courtyard", 192, 108);
 	ReferenceSettings truth{.measure = ReferenceMeasure::hemisphere, .source = MatterSource::depth, .radius_m = 1.0, .rays = 256};
 	const std::vector<ReferenceValue> reference = referenceOfGBuffer(nullptr, gbuffer, truth, {2, {}});
 	const std::vector<Pattern> five{generatePattern(diskRecipe(5))};
-	settings.radius_m = 1.0;
-	const double area_error = rmseOf(reference, visibilityOf(gbuffer, samplesOf(ShadeMethod::vo_area, five), settings));
-	settings.method = ShadeMethod::vo_line;
-	const double line_error = rmseOf(reference, visibilityOf(gbuffer, samplesOf(ShadeMethod::vo_line, five), settings));
+	const auto errorOf = [&](ShadeMethod method)
+	{
+		return rmseOf(reference, visibilityOf(gbuffer, samplesOf(method, five), settingsFor(method, 1.0)));
+	};
+	const double area_error = errorOf(ShadeMethod::vo_area);
+	const double line_error = errorOf(ShadeMethod::vo_line);
 	CAPTURE(area_error, line_error);
 	CHECK(area_error < 0.95 * line_error);
 }
@@ -180,12 +155,12 @@ TEST_CASE("shade: pairs take the halo from what is far in front, and nothing fro
 	ShadeSettings paired;
 	paired.volume.paired = true;
 	const std::size_t beside = 32 * 64 + 30; // two pixels from the edge, on the far wall
-	const GBuffer walls = wallsAt(64, 2.0F);
+	const GBuffer walls = stepOf(64, 2.0);
 	const float halo = visibilityOf(walls, samples, settings)[beside];
 	CHECK(halo < 0.75F);
 	CHECK(visibilityOf(walls, samples, paired)[beside] == Approx(1.0F).margin(1e-5));
 	// Surfaces in range darken as before.
-	const GBuffer step = wallsAt(64, 0.4F);
+	const GBuffer step = stepOf(64, 0.4);
 	CHECK(visibilityOf(step, samples, paired)[beside] == visibilityOf(step, samples, settings)[beside]);
 	for (const bool use_normal : {true, false})
 	{
@@ -207,7 +182,7 @@ TEST_CASE("shade: pairs take the halo from what is far in front, and nothing fro
 TEST_CASE("shade: thickness opens what lies behind a thin surface in front", "[shade]")
 {
 	const ShadeSamples samples = samplesOf(ShadeMethod::vo_line, {generatePattern(diskRecipe(16))});
-	const GBuffer walls = wallsAt(64, 2.0F);
+	const GBuffer walls = stepOf(64, 2.0);
 	const std::size_t beside = 32 * 64 + 30;
 	ShadeSettings settings;
 	const float endless = visibilityOf(walls, samples, settings)[beside];
@@ -215,7 +190,7 @@ TEST_CASE("shade: thickness opens what lies behind a thin surface in front", "[s
 	CHECK(visibilityOf(walls, samples, settings)[beside] == 1.0F);
 	CHECK(endless < 0.75F);
 	// Points agree with many lines if a thin step is inside the ball.
-	const GBuffer step = wallsAt(64, 0.3F);
+	const GBuffer step = stepOf(64, 0.3);
 	settings.volume.thickness_m = 0.1;
 	const float lines = visibilityOf(step, samplesOf(ShadeMethod::vo_line, {many(Domain::disk)}), settings)[beside];
 	settings.method = ShadeMethod::vo_point;
@@ -227,27 +202,23 @@ TEST_CASE("shade: thickness opens what lies behind a thin surface in front", "[s
 TEST_CASE("shade: two radii are the product or the lesser of one radius each", "[shade]")
 {
 	const GBuffer gbuffer = builtinView("cornell", 48, 48);
-	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::vo_area})
+	const ShadeMethod method = GENERATE(ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::vo_area);
+	Recipe recipe = diskRecipe(9);
+	recipe.domain = domainOf(method);
+	const ShadeSamples samples = samplesOf(method, {generatePattern(recipe)});
+	ShadeSettings settings = settingsFor(method, 0.2);
+	const std::vector<float> small = visibilityOf(gbuffer, samples, settings);
+	settings.radius_m = 0.6;
+	const std::vector<float> large = visibilityOf(gbuffer, samples, settings);
+	settings.volume.second_radius_m = 0.2;
+	settings.volume.radii = TwoRadii::product;
+	const std::vector<float> product = visibilityOf(gbuffer, samples, settings);
+	settings.volume.radii = TwoRadii::minimum;
+	const std::vector<float> minimum = visibilityOf(gbuffer, samples, settings);
+	for (std::size_t i = 0; i < small.size(); ++i)
 	{
-		Recipe recipe = diskRecipe(9);
-		recipe.domain = domainOf(method);
-		const ShadeSamples samples = samplesOf(method, {generatePattern(recipe)});
-		ShadeSettings settings;
-		settings.method = method;
-		settings.radius_m = 0.2;
-		const std::vector<float> small = visibilityOf(gbuffer, samples, settings);
-		settings.radius_m = 0.6;
-		const std::vector<float> large = visibilityOf(gbuffer, samples, settings);
-		settings.volume.second_radius_m = 0.2;
-		settings.volume.radii = TwoRadii::product;
-		const std::vector<float> product = visibilityOf(gbuffer, samples, settings);
-		settings.volume.radii = TwoRadii::minimum;
-		const std::vector<float> minimum = visibilityOf(gbuffer, samples, settings);
-		for (std::size_t i = 0; i < small.size(); ++i)
-		{
-			REQUIRE(product[i] == Approx(small[i] * large[i]).margin(1e-6));
-			REQUIRE(minimum[i] == std::min(small[i], large[i]));
-		}
+		REQUIRE(product[i] == Approx(small[i] * large[i]).margin(1e-6));
+		REQUIRE(minimum[i] == std::min(small[i], large[i]));
 	}
 }
 
@@ -283,32 +254,26 @@ TEST_CASE("shade: OpenGL agrees with the CPU on every feature of volumetric obsc
 	const GBuffer gbuffer = builtinView("suburb", 160, 90);
 	TileRecipe random;
 	random.kind = TileKind::random;
-	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::vo_area})
+	const ShadeMethod method = GENERATE(ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::vo_area);
+	Recipe recipe = diskRecipe(8, method != ShadeMethod::vo_point);
+	recipe.domain = domainOf(method);
+	std::vector<Pattern> variants = generateTile(generatePattern(recipe), random, {}).variants;
+	for (const int feature : {0, 1, 2, 3})
 	{
-		Recipe recipe = diskRecipe(8, method != ShadeMethod::vo_point);
-		recipe.domain = domainOf(method);
-		std::vector<Pattern> variants = generateTile(generatePattern(recipe), random, {}).variants;
-		for (const int feature : {0, 1, 2, 3})
+		ShadeSettings settings = settingsFor(method, 1.0);
+		settings.use_normal = feature != 3;
+		settings.volume.thickness_m = feature == 1 ? 0.3 : 0.0;
+		settings.volume.quadratic = feature == 2;
+		settings.volume.radii = feature == 2 ? TwoRadii::product : TwoRadii::none;
+		settings.volume.second_radius_m = 0.4;
+		settings.volume.paired = feature == 3 && method != ShadeMethod::vo_point;
+		std::vector<Pattern> own = variants;
+		for (Pattern& one : own)
 		{
-			ShadeSettings settings;
-			settings.method = method;
-			settings.radius_m = 1.0;
-			settings.use_normal = feature != 3;
-			settings.volume.thickness_m = feature == 1 ? 0.3 : 0.0;
-			settings.volume.quadratic = feature == 2;
-			settings.volume.radii = feature == 2 ? TwoRadii::product : TwoRadii::none;
-			settings.volume.second_radius_m = 0.4;
-			settings.volume.paired = feature == 3 && method != ShadeMethod::vo_point;
-			std::vector<Pattern> own = variants;
-			for (Pattern& one : own)
-			{
-				one = settings.volume.paired ? pairedPattern(one) : one;
-			}
-			const ShadeSamples samples = samplesOf(method, own);
-			const std::vector<float> cpu = visibilityOf(gbuffer, samples, settings);
-			const std::vector<float> gl = shadeOnGl(gbuffer, samples, settings).visibility;
-			CAPTURE(static_cast<int>(method), feature);
-			checkSamePicture(cpu, gl);
+			one = settings.volume.paired ? pairedPattern(one) : one;
 		}
+		const ShadeSamples samples = samplesOf(method, own);
+		CAPTURE(feature);
+		checkOnGl(gbuffer, samples, settings);
 	}
 }

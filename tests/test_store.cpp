@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The store of finished work: archives, values on disk, units of a stage and their shares.
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/file.h"
-#include "core/random.h"
 #include "core/work_units.h"
 
 #include <glm/mat4x4.hpp>
@@ -253,25 +250,23 @@ TEST_CASE("shares: each unit is computed once, and a run after them computes non
 {
 	Squares single;
 	single.run({});
-	for (const int of : {1, 2, 7, 16, 30})
+	const int of = GENERATE(1, 2, 7, 16, 30);
+	const TemporaryFolder folder;
+	std::size_t computed = 0;
+	for (int number = of; number >= 1; --number)
 	{
-		const TemporaryFolder folder;
-		std::size_t computed = 0;
-		for (int number = of; number >= 1; --number)
-		{
-			WorkUnits units(folder / "store", kCommand, WorkShare{number, of});
-			Squares squares;
-			squares.run({1, {}, &units});
-			computed += squares.computed;
-			CHECK(isShare({1, {}, &units}));
-		}
-		CHECK(computed == 20);
-		WorkUnits units(folder / "store", kCommand);
-		Squares all;
-		all.run({2, {}, &units});
-		CHECK(all.values == single.values);
-		CHECK(all.computed == 0);
+		WorkUnits units(folder / "store", kCommand, WorkShare{number, of});
+		Squares squares;
+		squares.run({1, {}, &units});
+		computed += squares.computed;
+		CHECK(isShare({1, {}, &units}));
 	}
+	CHECK(computed == 20);
+	WorkUnits units(folder / "store", kCommand);
+	Squares all;
+	all.run({2, {}, &units});
+	CHECK(all.values == single.values);
+	CHECK(all.computed == 0);
 }
 
 TEST_CASE("shares: units of a group go to one share, in whatever stage they are", "[core]")

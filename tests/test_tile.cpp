@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "testing.h"
 
-#include "core/random.h"
 #include "pattern/energy.h"
 #include "pattern/pattern.h"
 #include "pattern/recipe.h"
@@ -299,73 +298,61 @@ TEST_CASE("tile moments: nearly the exact error, between frames alike and not al
 		  "[pattern]")
 {
 	const TileFilter filter = tileFilterNamed("binomial:3");
-	for (const Domain domain : {Domain::disk, Domain::ball, Domain::hemisphere})
+	const Domain domain = GENERATE(Domain::disk, Domain::ball, Domain::hemisphere);
+	const bool moves = GENERATE(false, true);
+	const TileTime time{4, 0.3, moves ? tileMoves(3, 4) : std::vector<glm::ivec2>{}};
+	PatternTile tile = scattered(domain, 3, time, 4);
+	for (Pattern& variant : tile.variants)
 	{
-		for (const bool moves : {false, true})
+		for (glm::dvec3& p : variant.points)
 		{
-			const TileTime time{4, 0.3, moves ? tileMoves(3, 4) : std::vector<glm::ivec2>{}};
-			PatternTile tile = scattered(domain, 3, time, 4);
-			for (Pattern& variant : tile.variants)
-			{
-				for (glm::dvec3& p : variant.points)
-				{
-					p.z = domain == Domain::hemisphere ? std::sqrt(1.0 - p.x * p.x - p.y * p.y) : p.z;
-				}
-			}
-			for (const glm::ivec2 pan : {glm::ivec2(0, 0), glm::ivec2(1, 0)}) // a pan makes the weights asymmetric in time
-			{
-				const TileShares shares = sharesOf(3, filter, time, 0, pan);
-				EnergyGradient exact_gradient;
-				EnergyGradient gradient;
-				const double exact = errorOf(tile, shares, &exact_gradient);
-				INFO(nameOf(domain) << ", moves " << moves << ", pan " << pan.x);
-				// Half-spaces that only the dropped part of the kernel distinguishes: a few per cent of the variants' errors.
-				TileMoments by_moments(domain, shares);
-				CHECK(errorByMoments(tile, by_moments, gradient) == Approx(exact).epsilon(0.03));
-				double difference2 = 0.0;
-				double all2 = 0.0;
-				for (std::size_t i = 0; i < gradient.points.size(); ++i)
-				{
-					const glm::dvec3 flat(1.0, 1.0, domain == Domain::ball ? 1.0 : 0.0); // z is determined on the hemisphere
-					const glm::dvec3 by_point = flat * exact_gradient.points[i];
-					difference2 +=
-						domain == Domain::hemisphere ? 0.0 : glm::dot(gradient.points[i] - by_point, gradient.points[i] - by_point);
-					all2 += glm::dot(by_point, by_point);
-				}
-				CHECK(difference2 < 0.01 * all2);
-			}
+			p.z = domain == Domain::hemisphere ? std::sqrt(1.0 - p.x * p.x - p.y * p.y) : p.z;
 		}
 	}
+	const glm::ivec2 pan = GENERATE(glm::ivec2(0, 0), glm::ivec2(1, 0)); // a pan makes the weights asymmetric in time
+	const TileShares shares = sharesOf(3, filter, time, 0, pan);
+	EnergyGradient exact_gradient;
+	EnergyGradient gradient;
+	const double exact = errorOf(tile, shares, &exact_gradient);
+	INFO(nameOf(domain) << ", moves " << moves << ", pan " << pan.x);
+	// Half-spaces that only the dropped part of the kernel distinguishes: a few per cent of the variants' errors.
+	TileMoments by_moments(domain, shares);
+	CHECK(errorByMoments(tile, by_moments, gradient) == Approx(exact).epsilon(0.03));
+	double difference2 = 0.0;
+	double all2 = 0.0;
+	for (std::size_t i = 0; i < gradient.points.size(); ++i)
+	{
+		const glm::dvec3 flat(1.0, 1.0, domain == Domain::ball ? 1.0 : 0.0); // z is determined on the hemisphere
+		const glm::dvec3 by_point = flat * exact_gradient.points[i];
+		difference2 += domain == Domain::hemisphere ? 0.0 : glm::dot(gradient.points[i] - by_point, gradient.points[i] - by_point);
+		all2 += glm::dot(by_point, by_point);
+	}
+	CHECK(difference2 < 0.01 * all2);
 }
 
 TEST_CASE("tile moments: the gradient of finite differences, whatever the threads", "[pattern]")
 {
-	for (const Domain domain : {Domain::disk, Domain::ball})
+	const Domain domain = GENERATE(Domain::disk, Domain::ball);
+	const TileTime time{3, 0.3, {}};
+	const TileShares shares = sharesOf(2, tileFilterNamed("gauss:0.7"), time, 0);
+	PatternTile tile = scattered(domain, 2, time, 3);
+	EnergyGradient gradient;
+	EnergyGradient other;
+	TileMoments by_moments(domain, shares);
+	const double value = errorByMoments(tile, by_moments, gradient);
+	CHECK(value == errorByMoments(tile, by_moments, other, 3));
+	CHECK(gradient.points == other.points);
+	CHECK(gradient.weights == other.weights);
+	const std::size_t i = GENERATE(0U, 7U, 35U);
+	glm::dvec3& point = tile.variants[i / 3].points[i % 3];
+	constexpr double h = 1e-6;
+	for (int axis = 0; axis < (domain == Domain::ball ? 3 : 2); ++axis)
 	{
-		const TileTime time{3, 0.3, {}};
-		const TileShares shares = sharesOf(2, tileFilterNamed("gauss:0.7"), time, 0);
-		PatternTile tile = scattered(domain, 2, time, 3);
-		EnergyGradient gradient;
-		EnergyGradient other;
-		TileMoments by_moments(domain, shares);
-		const double value = errorByMoments(tile, by_moments, gradient);
-		CHECK(value == errorByMoments(tile, by_moments, other, 3));
-		CHECK(gradient.points == other.points);
-		CHECK(gradient.weights == other.weights);
-		for (const std::size_t i : {0U, 7U, 35U})
-		{
-			glm::dvec3& point = tile.variants[i / 3].points[i % 3];
-			constexpr double h = 1e-6;
-			for (int axis = 0; axis < (domain == Domain::ball ? 3 : 2); ++axis)
-			{
-				point[axis] += h;
-				const double above = errorByMoments(tile, by_moments, other);
-				point[axis] -= 2.0 * h;
-				CHECK(gradient.points[i][axis] ==
-					  Approx((above - errorByMoments(tile, by_moments, other)) / (2.0 * h)).margin(1e-9));
-				point[axis] += h;
-			}
-		}
+		point[axis] += h;
+		const double above = errorByMoments(tile, by_moments, other);
+		point[axis] -= 2.0 * h;
+		CHECK(gradient.points[i][axis] == Approx((above - errorByMoments(tile, by_moments, other)) / (2.0 * h)).margin(1e-9));
+		point[axis] += h;
 	}
 }
 
@@ -392,16 +379,14 @@ TEST_CASE("tile: the error of slices is that over periodic intervals and boxes, 
 	CHECK(planeErrorOf(slices) == Approx(std::sqrt(squaredErrorByIntervals(slices, 100000))).epsilon(2e-3));
 	EnergyGradient gradient;
 	squaredError(slices.domain, Ensemble::plane, Part::whole, slices.points, slices.weights, &gradient);
-	for (const int axis : {0, 1})
-	{
-		constexpr double h = 1e-6;
-		Pattern moved = slices;
-		moved.points[1][axis] += h;
-		const double above = planeErrorOf(moved);
-		moved.points[1][axis] -= 2.0 * h;
-		const double below = planeErrorOf(moved);
-		CHECK(gradient.points[1][axis] == Approx((above * above - below * below) / (2.0 * h)).margin(1e-8));
-	}
+	const int axis = GENERATE(0, 1);
+	constexpr double h = 1e-6;
+	Pattern moved = slices;
+	moved.points[1][axis] += h;
+	const double above = planeErrorOf(moved);
+	moved.points[1][axis] -= 2.0 * h;
+	const double below = planeErrorOf(moved);
+	CHECK(gradient.points[1][axis] == Approx((above * above - below * below) / (2.0 * h)).margin(1e-8));
 }
 
 TEST_CASE("tile: slices are better behind a filter than those of the kernel, and over frames", "[pattern]")
@@ -528,22 +513,20 @@ TEST_CASE("tile: the error behind a filter has the gradient of finite difference
 	PatternTile tile = scattered(Domain::disk, 2, time, 3);
 	EnergyGradient gradient;
 	errorOf(tile, shares, &gradient);
-	for (const std::size_t i : {0u, 7u, 23u})
-	{
-		glm::dvec3& point = tile.variants[i / 3].points[i % 3];
-		double& weight = tile.variants[i / 3].weights[i % 3];
-		constexpr double h = 1e-6;
-		point.x += h;
-		const double above = errorOf(tile, shares);
-		point.x -= 2.0 * h;
-		CHECK(gradient.points[i].x == Approx((above - errorOf(tile, shares)) / (2.0 * h)).margin(1e-9));
-		point.x += h;
-		weight += h;
-		const double heavier = errorOf(tile, shares);
-		weight -= 2.0 * h;
-		CHECK(gradient.weights[i] == Approx((heavier - errorOf(tile, shares)) / (2.0 * h)).margin(1e-9));
-		weight += h;
-	}
+	const std::size_t i = GENERATE(0u, 7u, 23u);
+	glm::dvec3& point = tile.variants[i / 3].points[i % 3];
+	double& weight = tile.variants[i / 3].weights[i % 3];
+	constexpr double h = 1e-6;
+	point.x += h;
+	const double above = errorOf(tile, shares);
+	point.x -= 2.0 * h;
+	CHECK(gradient.points[i].x == Approx((above - errorOf(tile, shares)) / (2.0 * h)).margin(1e-9));
+	point.x += h;
+	weight += h;
+	const double heavier = errorOf(tile, shares);
+	weight -= 2.0 * h;
+	CHECK(gradient.weights[i] == Approx((heavier - errorOf(tile, shares)) / (2.0 * h)).margin(1e-9));
+	weight += h;
 }
 
 TEST_CASE("tile: filters' tiles are good behind them, and their variants by themselves", "[pattern]")
@@ -599,21 +582,19 @@ TEST_CASE("tile: frames of their own and one tile that moves", "[pattern]")
 
 TEST_CASE("tile: over frames points and directions gain as lines do", "[pattern]")
 {
-	for (const Domain domain : {Domain::ball, Domain::hemisphere})
+	const Domain domain = GENERATE(Domain::ball, Domain::hemisphere);
+	const Pattern base = generatePattern(recipeOf(domain, 5), RunSettings{2, {}});
+	TileRecipe recipe{.filters = {tileFilterNamed("box:4")}, .frames = 16};
+	const PatternTile tile = generateTile(base, recipe, RunSettings{2, {}});
+	const TileTime time{16, 0.1, {}};
+	const double one = std::sqrt(errorOf(tile, sharesOf(4, recipe.filters[0], time)));
+	CHECK(one < 0.2 * planeErrorOf(base));
+	CHECK(std::sqrt(errorOf(tile, sharesOf(4, recipe.filters[0], time, 0))) < 0.25 * one);
+	for (const Pattern& variant : tile.variants)
 	{
-		const Pattern base = generatePattern(recipeOf(domain, 5), RunSettings{2, {}});
-		TileRecipe recipe{.filters = {tileFilterNamed("box:4")}, .frames = 16};
-		const PatternTile tile = generateTile(base, recipe, RunSettings{2, {}});
-		const TileTime time{16, 0.1, {}};
-		const double one = std::sqrt(errorOf(tile, sharesOf(4, recipe.filters[0], time)));
-		CHECK(one < 0.2 * planeErrorOf(base));
-		CHECK(std::sqrt(errorOf(tile, sharesOf(4, recipe.filters[0], time, 0))) < 0.25 * one);
-		for (const Pattern& variant : tile.variants)
+		for (const glm::dvec3& p : variant.points)
 		{
-			for (const glm::dvec3& p : variant.points)
-			{
-				CHECK((glm::length(p) <= 1.0 + 1e-6 && (domain == Domain::ball || p.z >= 0.0)));
-			}
+			CHECK((glm::length(p) <= 1.0 + 1e-6 && (domain == Domain::ball || p.z >= 0.0)));
 		}
 	}
 }

@@ -3,7 +3,6 @@
 #include "small_levels.h"
 #include "testing.h"
 
-#include "core/random.h"
 #include "scene/builtin.h"
 #include "scene/ray_triangle.h"
 #include "scene/reference.h"
@@ -207,37 +206,35 @@ TEST_CASE("vicinity: no box within reach of a point is left out, most of the oth
 
 TEST_CASE("vicinity: the same visibility by a tree of what is near", "[reference]")
 {
-	for (const char* const name : {"courtyard", "foliage"})
+	const char* const name = GENERATE(as<const char*>{}, "courtyard", "foliage");
+	const Level level = builtinLevel(name);
+	const Tracer whole(level, {});
+	const GBuffer gbuffer = castGBuffer(whole, viewOf(level.cameras.front(), 48, 27), 48, 27, NormalKind::geometric, {});
+	for (const double radius_m : {0.05, 1.5, 1e4})
 	{
-		const Level level = builtinLevel(name);
-		const Tracer whole(level, {});
-		const GBuffer gbuffer = castGBuffer(whole, viewOf(level.cameras.front(), 48, 27), 48, 27, NormalKind::geometric, {});
-		for (const double radius_m : {0.05, 1.5, 1e4})
+		for (const Falloff falloff : {Falloff::hard, Falloff::linear})
 		{
-			for (const Falloff falloff : {Falloff::hard, Falloff::linear})
+			ReferenceSettings settings{.falloff = falloff, .radius_m = radius_m, .rays = 64};
+			const std::optional<Vicinity> reach = reachOf(level, gbuffer, settings);
+			REQUIRE(reach);
+			std::size_t kept = 0;
+			for (std::size_t i = 0; i < level.triangles.size(); ++i)
 			{
-				ReferenceSettings settings{.falloff = falloff, .radius_m = radius_m, .rays = 64};
-				const std::optional<Vicinity> reach = reachOf(level, gbuffer, settings);
-				REQUIRE(reach);
-				std::size_t kept = 0;
-				for (std::size_t i = 0; i < level.triangles.size(); ++i)
-				{
-					kept += reach->touches(boundsOf(level, i)) ? 1U : 0U;
-				}
-				CHECK((kept < level.triangles.size()) == (radius_m < 1e4)); // otherwise the test is vacuous
-				const Tracer near(level, {}, &*reach);
-				CHECK(near.error() == whole.error());
-				const std::vector<ReferenceValue> expected = referenceOfGBuffer(&whole, gbuffer, settings, {});
-				const std::vector<ReferenceValue> found = referenceOfGBuffer(&near, gbuffer, settings, {});
-				for (std::size_t i = 0; i < expected.size(); ++i)
-				{
-					REQUIRE(found[i].visibility == expected[i].visibility);
-				}
+				kept += reach->touches(boundsOf(level, i)) ? 1U : 0U;
+			}
+			CHECK((kept < level.triangles.size()) == (radius_m < 1e4)); // otherwise the test is vacuous
+			const Tracer near(level, {}, &*reach);
+			CHECK(near.error() == whole.error());
+			const std::vector<ReferenceValue> expected = referenceOfGBuffer(&whole, gbuffer, settings, {});
+			const std::vector<ReferenceValue> found = referenceOfGBuffer(&near, gbuffer, settings, {});
+			for (std::size_t i = 0; i < expected.size(); ++i)
+			{
+				REQUIRE(found[i].visibility == expected[i].visibility);
 			}
 		}
-		ReferenceSettings settings{.measure = ReferenceMeasure::hemisphere};
-		CHECK(!reachOf(level, gbuffer, settings));
 	}
+	ReferenceSettings settings{.measure = ReferenceMeasure::hemisphere};
+	CHECK(!reachOf(level, gbuffer, settings));
 }
 
 // Sample sets: their means, and the errors that they state.
@@ -245,79 +242,71 @@ TEST_CASE("vicinity: the same visibility by a tree of what is near", "[reference
 TEST_CASE("samples: standard errors hold for half-spaces, in every domain", "[reference]")
 {
 	// Occupied where n·p > c; the truth is the mean of many placements. Compares errors over placements with the stated ones.
-	for (const SampleDomain domain : {SampleDomain::hemisphere, SampleDomain::ball, SampleDomain::box})
+	const SampleDomain domain = GENERATE(SampleDomain::hemisphere, SampleDomain::ball, SampleDomain::box);
+	const int count = GENERATE(16, 64, 256, 1024);
+	const SampleSet set(domain, count);
+	const auto n = static_cast<std::size_t>(count);
+	std::vector<float> x(n);
+	std::vector<float> y(n);
+	std::vector<float> z(n);
+	std::vector<float> values(n);
+	Random random(2);
+	double errors = 0.0;
+	double stated = 0.0;
+	for (int plane = 0; plane < 8; ++plane)
 	{
-		for (const int count : {16, 64, 256, 1024})
+		const double a = random.uniform() - 0.5;
+		const double b = random.uniform() - 0.5;
+		const double c = random.uniform() - 0.5;
+		const glm::vec3 normal(glm::normalize(glm::dvec3(a, b, c)));
+		const auto offset = static_cast<float>(0.8 * random.uniform() - 0.4);
+		constexpr int kPlacements = 100;
+		double sum = 0.0;
+		double squares = 0.0;
+		for (int p = 0; p < kPlacements; ++p)
 		{
-			const SampleSet set(domain, count);
-			const auto n = static_cast<std::size_t>(count);
-			std::vector<float> x(n);
-			std::vector<float> y(n);
-			std::vector<float> z(n);
-			std::vector<float> values(n);
-			Random random(2);
-			double errors = 0.0;
-			double stated = 0.0;
-			for (int plane = 0; plane < 8; ++plane)
+			set.place(random, x, y, z);
+			double occupied = 0.0;
+			for (std::size_t i = 0; i < n; ++i)
 			{
-				const double a = random.uniform() - 0.5;
-				const double b = random.uniform() - 0.5;
-				const double c = random.uniform() - 0.5;
-				const glm::vec3 normal(glm::normalize(glm::dvec3(a, b, c)));
-				const auto offset = static_cast<float>(0.8 * random.uniform() - 0.4);
-				constexpr int kPlacements = 100;
-				double sum = 0.0;
-				double squares = 0.0;
-				for (int p = 0; p < kPlacements; ++p)
-				{
-					set.place(random, x, y, z);
-					double occupied = 0.0;
-					for (std::size_t i = 0; i < n; ++i)
-					{
-						values[i] = normal.x * x[i] + normal.y * y[i] + normal.z * z[i] > offset ? 1.0F : 0.0F;
-						occupied += static_cast<double>(values[i]) / count;
-					}
-					sum += occupied;
-					squares += occupied * occupied;
-					stated += set.squaredError(values);
-				}
-				errors += squares - sum * sum / kPlacements;
+				values[i] = normal.x * x[i] + normal.y * y[i] + normal.z * z[i] > offset ? 1.0F : 0.0F;
+				occupied += static_cast<double>(values[i]) / count;
 			}
-			CAPTURE(static_cast<int>(domain), count, std::sqrt(errors / stated));
-			CHECK(errors <= 1.2 * stated);
-			CHECK(errors >= 0.1 * stated);
+			sum += occupied;
+			squares += occupied * occupied;
+			stated += set.squaredError(values);
 		}
+		errors += squares - sum * sum / kPlacements;
 	}
+	CAPTURE(static_cast<int>(domain), count, std::sqrt(errors / stated));
+	CHECK(errors <= 1.2 * stated);
+	CHECK(errors >= 0.1 * stated);
 }
 
 TEST_CASE("samples: every placement has the mean of its domain in expectation", "[reference]")
 {
-	for (const SampleDomain domain : {SampleDomain::hemisphere, SampleDomain::ball, SampleDomain::box})
+	const SampleDomain domain = GENERATE(SampleDomain::hemisphere, SampleDomain::ball, SampleDomain::box);
+	const int count = GENERATE(1, 2, 5, 33);
+	const SampleSet set(domain, count);
+	Random random(11);
+	const auto n = static_cast<std::size_t>(count);
+	std::vector<float> x(n);
+	std::vector<float> y(n);
+	std::vector<float> z(n);
+	double mean = 0.0;
+	double first = 0.0;
+	const int placements = 200000 / count;
+	for (int p = 0; p < placements; ++p)
 	{
-		for (const int count : {1, 2, 5, 33})
+		set.place(random, x, y, z);
+		for (std::size_t i = 0; i < n; ++i)
 		{
-			const SampleSet set(domain, count);
-			Random random(11);
-			const auto n = static_cast<std::size_t>(count);
-			std::vector<float> x(n);
-			std::vector<float> y(n);
-			std::vector<float> z(n);
-			double mean = 0.0;
-			double first = 0.0;
-			const int placements = 200000 / count;
-			for (int p = 0; p < placements; ++p)
-			{
-				set.place(random, x, y, z);
-				for (std::size_t i = 0; i < n; ++i)
-				{
-					mean += static_cast<double>(x[i] * x[i] + y[i] * y[i]) / (static_cast<double>(placements) * count);
-					first += static_cast<double>(x[i]) / (static_cast<double>(placements) * count);
-				}
-			}
-			const double expected = domain == SampleDomain::hemisphere ? 0.5 : domain == SampleDomain::ball ? 0.4 : 2.0 / 3.0;
-			CAPTURE(static_cast<int>(domain), count);
-			CHECK(mean == Approx(expected).margin(0.004));
-			CHECK(std::fabs(first) < 0.006);
+			mean += static_cast<double>(x[i] * x[i] + y[i] * y[i]) / (static_cast<double>(placements) * count);
+			first += static_cast<double>(x[i]) / (static_cast<double>(placements) * count);
 		}
 	}
+	const double expected = domain == SampleDomain::hemisphere ? 0.5 : domain == SampleDomain::ball ? 0.4 : 2.0 / 3.0;
+	CAPTURE(static_cast<int>(domain), count);
+	CHECK(mean == Approx(expected).margin(0.004));
+	CHECK(std::fabs(first) < 0.006);
 }

@@ -2,7 +2,6 @@
 // The search of nook tune on grids whose every value is known.
 #include "testing.h"
 
-#include "core/random.h"
 #include "study/tune.h"
 #include "study/tune_search.h"
 
@@ -191,59 +190,46 @@ TuneSearchSettings fourViews()
 
 TEST_CASE("tune: within 5 % of the grid's best for at most a fifth of its cost", "[tune]")
 {
-	for (const bool of_time : {true, false})
-	{
-		for (const OverLevels over : {OverLevels::mean, OverLevels::worst})
-		{
-			// Drawings whose time is that of their pixels, as on a CPU, and such that are mostly passes, as on a GPU.
-			for (const double part : {0.02, 0.6})
-			{
-				const Outcome outcome = outcomeOf(of_time, over, part, 0.05);
-				INFO((of_time ? "budget" : "error")
-					 << (over == OverLevels::mean ? ", mean" : ", worst") << ", fixed part " << part << ": " << outcome.within
-					 << " of " << outcome.runs << ", worst " << outcome.worst << ", cost " << outcome.greatest_cost);
-				CHECK(outcome.within >= outcome.runs - 1);
-				CHECK(outcome.worst <= 1.15);
-				CHECK(outcome.greatest_cost <= 0.2);
-			}
-		}
-	}
+	const bool of_time = GENERATE(true, false);
+	const OverLevels over = GENERATE(OverLevels::mean, OverLevels::worst);
+	// Drawings whose time is that of their pixels, as on a CPU, and such that are mostly passes, as on a GPU.
+	const double part = GENERATE(0.02, 0.6);
+	const Outcome outcome = outcomeOf(of_time, over, part, 0.05);
+	INFO((of_time ? "budget" : "error") << (over == OverLevels::mean ? ", mean" : ", worst") << ", fixed part " << part << ": "
+										<< outcome.within << " of " << outcome.runs << ", worst " << outcome.worst << ", cost "
+										<< outcome.greatest_cost);
+	CHECK(outcome.within >= outcome.runs - 1);
+	CHECK(outcome.worst <= 1.15);
+	CHECK(outcome.greatest_cost <= 0.2);
 }
 
 TEST_CASE("tune: from 18 candidates on at most a fifth of the pixels that the grid draws", "[tune]")
 {
-	for (const std::size_t step :
-		 {std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{7}, std::size_t{14}}) // 252 to 18 candidates
+	const std::size_t step =
+		GENERATE(std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{7}, std::size_t{14}); // 252 to 18 candidates
+	const double share = GENERATE(0.05, 0.3, 0.6, 0.95);
+	Grid grid(7, 0.1, 0.05);
+	const std::size_t candidates = grid.size() / step;
+	const MeasureTrial measure = [&](std::size_t i, const Fidelity& fidelity)
 	{
-		for (const double share : {0.05, 0.3, 0.6, 0.95})
-		{
-			Grid grid(7, 0.1, 0.05);
-			const std::size_t candidates = grid.size() / step;
-			const MeasureTrial measure = [&](std::size_t i, const Fidelity& fidelity)
-			{
-				return grid.measure(step * i, fidelity);
-			};
-			for (const bool of_time : {true, false})
-			{
-				std::vector<double> bounds;
-				for (std::size_t i = 0; i < candidates; ++i)
-				{
-					bounds.push_back(of_time ? grid.time(step * i) : grid.error(step * i, OverLevels::mean));
-				}
-				std::sort(bounds.begin(), bounds.end());
-				TuneGoal goal;
-				(of_time ? goal.budget_s : goal.max_error) =
-					1.05 * bounds[static_cast<std::size_t>(share * static_cast<double>(candidates))];
-				const TuneSearchSettings settings = rungsFor(kTuneViews, 7);
-				const TuneSearch found = searchCandidates(candidates, goal, settings, measure);
-				const TuneSearch all = searchGrid(candidates, goal, settings, measure);
-				REQUIRE(found.pick);
-				CHECK(all.pictures == static_cast<double>(candidates * kTuneViews * 8));
-				INFO(candidates << " candidates, " << (of_time ? "budget" : "error") << " of " << share);
-				CHECK(found.pictures <= 0.2 * all.pictures);
-			}
-		}
+		return grid.measure(step * i, fidelity);
+	};
+	const bool of_time = GENERATE(true, false);
+	std::vector<double> bounds;
+	for (std::size_t i = 0; i < candidates; ++i)
+	{
+		bounds.push_back(of_time ? grid.time(step * i) : grid.error(step * i, OverLevels::mean));
 	}
+	std::sort(bounds.begin(), bounds.end());
+	TuneGoal goal;
+	(of_time ? goal.budget_s : goal.max_error) = 1.05 * bounds[static_cast<std::size_t>(share * static_cast<double>(candidates))];
+	const TuneSearchSettings settings = rungsFor(kTuneViews, 7);
+	const TuneSearch found = searchCandidates(candidates, goal, settings, measure);
+	const TuneSearch all = searchGrid(candidates, goal, settings, measure);
+	REQUIRE(found.pick);
+	CHECK(all.pictures == static_cast<double>(candidates * kTuneViews * 8));
+	INFO(candidates << " candidates, " << (of_time ? "budget" : "error") << " of " << share);
+	CHECK(found.pictures <= 0.2 * all.pictures);
 }
 
 TEST_CASE("tune: clocks that are off by a quarter seldom change the pick", "[tune]")
@@ -425,34 +411,32 @@ TEST_CASE("tune: what takes no time is searched as others are", "[tune]")
 
 TEST_CASE("tune: nothing is only expected to be better than the pick", "[tune]")
 {
-	for (const bool of_time : {true, false})
+	const bool of_time = GENERATE(true, false);
+	for (uint32_t seed = 1; seed <= 10; ++seed)
 	{
-		for (uint32_t seed = 1; seed <= 10; ++seed)
+		Grid grid(seed, 0.3, 0.1);
+		const MeasureTrial measure = [&grid](std::size_t i, const Fidelity& fidelity)
 		{
-			Grid grid(seed, 0.3, 0.1);
-			const MeasureTrial measure = [&grid](std::size_t i, const Fidelity& fidelity)
+			return grid.measure(i, fidelity);
+		};
+		const TuneGoal goal{of_time ? std::optional(0.02) : std::nullopt, of_time ? std::nullopt : std::optional(0.08),
+							OverLevels::mean};
+		const TuneSearchSettings settings = rungs();
+		const TuneSearch found = searchCandidates(grid.size(), goal, settings, measure);
+		REQUIRE(found.pick);
+		const Tried& best = found.tried[found.instead_of.value_or(*found.pick)];
+		for (const Tried& tried : found.tried)
+		{
+			const bool within = of_time ? tried.time_s <= 0.02 : tried.error <= 0.08;
+			const bool less = of_time ? tried.error < best.error : tried.time_s < best.time_s;
+			const bool measured = isFrom(tried, settings.rungs.size() - 1);
+			INFO(tried.candidate << " in place of " << best.candidate << ", seed " << seed);
+			CHECK((measured || !within || !less));
+			// Where an error is minimised, the second of two that are alike is taken if it is faster.
+			if (of_time && within && !measured && isFrom(tried, settings.once()) && tried.error <= 1.02 * best.error &&
+				tried.time_s <= 0.95 * best.time_s && tried.time_s < found.tried[*found.pick].time_s)
 			{
-				return grid.measure(i, fidelity);
-			};
-			const TuneGoal goal{of_time ? std::optional(0.02) : std::nullopt, of_time ? std::nullopt : std::optional(0.08),
-								OverLevels::mean};
-			const TuneSearchSettings settings = rungs();
-			const TuneSearch found = searchCandidates(grid.size(), goal, settings, measure);
-			REQUIRE(found.pick);
-			const Tried& best = found.tried[found.instead_of.value_or(*found.pick)];
-			for (const Tried& tried : found.tried)
-			{
-				const bool within = of_time ? tried.time_s <= 0.02 : tried.error <= 0.08;
-				const bool less = of_time ? tried.error < best.error : tried.time_s < best.time_s;
-				const bool measured = isFrom(tried, settings.rungs.size() - 1);
-				INFO(tried.candidate << " in place of " << best.candidate << ", seed " << seed);
-				CHECK((measured || !within || !less));
-				// Where an error is minimised, the second of two that are alike is taken if it is faster.
-				if (of_time && within && !measured && isFrom(tried, settings.once()) && tried.error <= 1.02 * best.error &&
-					tried.time_s <= 0.95 * best.time_s && tried.time_s < found.tried[*found.pick].time_s)
-				{
-					CHECK(compareTrials(best.trial, tried.trial).errors_differ);
-				}
+				CHECK(compareTrials(best.trial, tried.trial).errors_differ);
 			}
 		}
 	}

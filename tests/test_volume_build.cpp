@@ -1,38 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The curve fitted to a level, and all steps from a level to its volumes.
-#include "fill.h"
 #include "small_levels.h"
 #include "small_volumes.h"
 #include "testing.h"
 
-#include "core/math.h"
-#include "core/random.h"
-#include "scene/builtin.h"
 #include "volume/build.h"
 #include "volume/evaluate.h"
 #include "volume/trim.h"
-#include "volume/volumes.h"
 
 namespace
 {
-
-// One polygon per triangle.
-VolumeSet volumesOf(const Level& level, double distance_m)
-{
-	VolumeSet set;
-	set.distance_m = distance_m;
-	set.exact_bounds = true;
-	for (std::size_t i = 0; i < level.triangles.size(); ++i)
-	{
-		const auto first = static_cast<uint32_t>(set.occluders.corners.size());
-		set.occluders.polygons.push_back({first, 3, static_cast<uint32_t>(i), 1.0F, false});
-		for (int k = 0; k < 3; ++k)
-		{
-			set.occluders.corners.push_back(level.positions[level.triangles[i][k]]);
-		}
-	}
-	return set;
-}
 
 CompensateSettings fitOf(int views, int per_view, int by_area, int rays)
 {
@@ -46,16 +23,11 @@ CompensateSettings fitOf(int views, int per_view, int by_area, int rays)
 
 VolumeSet squareOf(float reach, float side_reach, bool two_sided)
 {
-	VolumeSet set;
-	set.distance_m = 2.0;
-	set.occluders.corners = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
-	set.occluders.polygons.push_back({0, 4, 0, 1.0F, two_sided});
-	set.occluders.polygons[0].reach = reach;
-	set.occluders.polygons[0].side_reach = side_reach;
+	VolumeSet set = setOf({}, 2.0, false);
+	set.occluders.add({.two_sided = two_sided, .reach = reach, .side_reach = side_reach},
+					  Corners{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 0.0}});
 	return set;
 }
-
-using Corners = std::vector<glm::dvec3>;
 
 // Convex, in a random plane: corners on an ellipse at random angles.
 Corners randomPolygon(nook::Random& random, std::size_t count, double width, double height, glm::dvec3 centre)
@@ -208,7 +180,7 @@ TEST_CASE("compensation: in a corner the curve brings sums to the reference", "[
 	addQuad(level, {0.0, 0.0, 0.0}, {4.0, 0.0, 0.0}, {0.0, 4.0, 0.0});
 	addQuad(level, {0.0, 0.0, 4.0}, {0.0, 0.0, -4.0}, {0.0, 4.0, 0.0});
 	const Tracer tracer(level, {});
-	const VolumeSet set = volumesOf(level, 1.0);
+	const VolumeSet set = setOf(trianglesOf(level), 1.0);
 	const CompensateSettings settings = fitOf(2, 200, 1500, 128);
 	const CompensateResult result = compensateVolumes(set, tracer, settings, {2, {}});
 	REQUIRE(result.trials.size() >= 2);
@@ -377,24 +349,22 @@ TEST_CASE("build: a ground that is open is simplified, and a curtain that is see
 	VolumeSettings settings;
 	settings.distance_m = 1.0;
 	settings.detail_more = 0.05;
-	for (const bool curtain : {false, true})
+	const bool curtain = GENERATE(false, true);
+	Level level = wavesOf(curtain);
+	if (curtain)
 	{
-		Level level = wavesOf(curtain);
-		if (curtain)
-		{
-			addBox(level, {-20.0, -1.0, -20.0}, {20.0, -0.01, 20.0});
-		}
-		const BuiltVolumes built = buildVolumes(level, settings, {2, {}});
-		const DetailTrial& whole = built.detail->trials.at(0);
-		CAPTURE(curtain, built.detail->detail, whole.polygons, built.set.occluders.polygons.size());
-		CHECK((built.detail->detail == 0.0) == curtain);
-		CHECK((2 * built.set.occluders.polygons.size() < whole.polygons) == !curtain);
-		// Chosen occluders have numbers of their own, so open ones are left alone.
-		VolumeSettings chosen = settings;
-		const Level occluders = level;
-		chosen.occluding = &occluders;
-		CHECK(buildVolumes(level, chosen, {2, {}}).detail->detail == 0.0);
+		addBox(level, {-20.0, -1.0, -20.0}, {20.0, -0.01, 20.0});
 	}
+	const BuiltVolumes built = buildVolumes(level, settings, {2, {}});
+	const DetailTrial& whole = built.detail->trials.at(0);
+	CAPTURE(curtain, built.detail->detail, whole.polygons, built.set.occluders.polygons.size());
+	CHECK((built.detail->detail == 0.0) == curtain);
+	CHECK((2 * built.set.occluders.polygons.size() < whole.polygons) == !curtain);
+	// Chosen occluders have numbers of their own, so open ones are left alone.
+	VolumeSettings chosen = settings;
+	const Level occluders = level;
+	chosen.occluding = &occluders;
+	CHECK(buildVolumes(level, chosen, {2, {}}).detail->detail == 0.0);
 }
 
 TEST_CASE("build: points that all polygons get wrong say nothing about detail", "[volume_build]")
@@ -593,42 +563,40 @@ TEST_CASE("trim: a receiver beyond the reach gets nothing, one within gets what 
 TEST_CASE("trim: files keep the reach, rounded up to 1/128, that of sides to eighths of it", "[trim]")
 {
 	const Level level = builtinLevel("cornell");
-	for (const bool prisms : {false, true})
+	const bool prisms = GENERATE(false, true);
+	VolumeSet set = volumesOf(level, 0.4, 8, true);
+	Random random(5);
+	for (Occluder& polygon : set.occluders.polygons)
 	{
-		VolumeSet set = volumesOf(level, 0.4, 8, true);
-		Random random(5);
-		for (Occluder& polygon : set.occluders.polygons)
-		{
-			polygon.reach = static_cast<float>(1.0 - random.uniform());
-			polygon.side_reach = polygon.reach * static_cast<float>(1.0 - random.uniform());
-		}
-		set.occluders.polygons[0].reach = set.occluders.polygons[0].side_reach = 1.0F;
-		set.occluders.polygons[1].reach = set.occluders.polygons[1].side_reach = 1e-6F;
-		const PackedVolumes packed = packVolumes(set, {prisms}, {});
-		const VolumeSet back = unpacked(packed, set);
-		REQUIRE(back.occluders.polygons.size() == set.occluders.polygons.size());
-		for (std::size_t i = 0; i < set.occluders.polygons.size(); ++i)
-		{
-			const double reach = static_cast<double>(set.occluders.polygons[i].reach);
-			REQUIRE(static_cast<double>(back.occluders.polygons[i].reach) == std::ceil(128.0 * reach) / 128.0);
-			REQUIRE(back.occluders.polygons[i].two_sided);
-			REQUIRE(nook_volumes::reachOf(packed.polygons[i]) == std::ceil(128.0 * reach) / 128.0);
-			const double side = static_cast<double>(set.occluders.polygons[i].side_reach);
-			const double kept = static_cast<double>(back.occluders.polygons[i].side_reach);
-			const double eighth = std::ceil(128.0 * reach) / 1024.0;
-			REQUIRE(kept == std::ceil(side / eighth) * eighth);
-			REQUIRE(nook_volumes::sideReachOf(packed.polygons[i]) == kept);
-			REQUIRE(nook_volumes::cornerCountOf(packed.polygons[i]) == back.occluders.polygons[i].corner_count);
-		}
-		// An untrimmed volume is written exactly as before reaches existed.
-		REQUIRE(packed.polygons[0].flags == nook_volumes::kTwoSided);
-		REQUIRE(packed.polygons[0].corner_bits == set.occluders.polygons[0].corner_count);
-		const PackedVolumes again = packVolumes(back, {prisms}, {});
-		for (std::size_t i = 0; i < packed.polygons.size(); ++i)
-		{
-			REQUIRE(again.polygons[i].flags == packed.polygons[i].flags);
-			REQUIRE(again.polygons[i].corner_bits == packed.polygons[i].corner_bits);
-		}
+		polygon.reach = static_cast<float>(1.0 - random.uniform());
+		polygon.side_reach = polygon.reach * static_cast<float>(1.0 - random.uniform());
+	}
+	set.occluders.polygons[0].reach = set.occluders.polygons[0].side_reach = 1.0F;
+	set.occluders.polygons[1].reach = set.occluders.polygons[1].side_reach = 1e-6F;
+	const PackedVolumes packed = packVolumes(set, {prisms}, {});
+	const VolumeSet back = unpacked(packed, set);
+	REQUIRE(back.occluders.polygons.size() == set.occluders.polygons.size());
+	for (std::size_t i = 0; i < set.occluders.polygons.size(); ++i)
+	{
+		const double reach = static_cast<double>(set.occluders.polygons[i].reach);
+		REQUIRE(static_cast<double>(back.occluders.polygons[i].reach) == std::ceil(128.0 * reach) / 128.0);
+		REQUIRE(back.occluders.polygons[i].two_sided);
+		REQUIRE(nook_volumes::reachOf(packed.polygons[i]) == std::ceil(128.0 * reach) / 128.0);
+		const double side = static_cast<double>(set.occluders.polygons[i].side_reach);
+		const double kept = static_cast<double>(back.occluders.polygons[i].side_reach);
+		const double eighth = std::ceil(128.0 * reach) / 1024.0;
+		REQUIRE(kept == std::ceil(side / eighth) * eighth);
+		REQUIRE(nook_volumes::sideReachOf(packed.polygons[i]) == kept);
+		REQUIRE(nook_volumes::cornerCountOf(packed.polygons[i]) == back.occluders.polygons[i].corner_count);
+	}
+	// An untrimmed volume is written exactly as before reaches existed.
+	REQUIRE(packed.polygons[0].flags == nook_volumes::kTwoSided);
+	REQUIRE(packed.polygons[0].corner_bits == set.occluders.polygons[0].corner_count);
+	const PackedVolumes again = packVolumes(back, {prisms}, {});
+	for (std::size_t i = 0; i < packed.polygons.size(); ++i)
+	{
+		REQUIRE(again.polygons[i].flags == packed.polygons[i].flags);
+		REQUIRE(again.polygons[i].corner_bits == packed.polygons[i].corner_bits);
 	}
 }
 
@@ -664,10 +632,10 @@ TEST_CASE("trim: no receiver loses more than it may, fragments are saved, thread
 	CHECK(counts.trimmed > whole.occluders.polygons.size() / 2);
 
 	const GBuffer gbuffer = castGBuffer(tracer, viewOf(level.cameras.front(), 32, 18), 32, 18, NormalKind::geometric, {});
-	const fill::FillCount of_whole = fill::countFill(gbuffer, whole, {});
-	const fill::FillCount of_cut = fill::countFill(gbuffer, cut, {});
-	INFO(of_whole.fragments << " fragments, " << of_cut.fragments << " of the shortened");
-	CHECK(10 * of_cut.fragments < 9 * of_whole.fragments);
+	const uint64_t of_whole = aovOnGl(gbuffer, whole, {}).counts.fragments;
+	const uint64_t of_cut = aovOnGl(gbuffer, cut, {}).counts.fragments;
+	INFO(of_whole << " fragments, " << of_cut << " of the shortened");
+	CHECK(10 * of_cut < 9 * of_whole);
 
 	VolumeSet again = whole;
 	trimVolumes(again, receivers, settings, {1, {}});
@@ -752,34 +720,28 @@ TEST_CASE("volume: a square's prism is the square moved outward by the distance"
 {
 	const Corners square{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
 	REQUIRE(nook::frontOf(square) == glm::dvec3(0, 0, 1));
-	for (const bool two_sided : {false, true})
-	{
-		const std::vector<glm::dvec3> points = prism(square, {0.5, two_sided, false});
-		REQUIRE(glm::distance(points[0], {-0.5, -0.5, two_sided ? -0.5 : 0.0}) < 1e-15);
-		REQUIRE(glm::distance(points[6], {2.5, 2.5, 0.5}) < 1e-15);
-	}
+	const bool two_sided = GENERATE(false, true);
+	const std::vector<glm::dvec3> points = prism(square, {0.5, two_sided, false});
+	REQUIRE(glm::distance(points[0], {-0.5, -0.5, two_sided ? -0.5 : 0.0}) < 1e-15);
+	REQUIRE(glm::distance(points[6], {2.5, 2.5, 0.5}) < 1e-15);
 }
 
 TEST_CASE("volume: collinear neighbours move straight outward", "[volume][prism]")
 {
 	const Corners corners{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}};
-	for (const bool exact : {false, true})
-	{
-		REQUIRE(glm::distance(prism(corners, {0.25, false, exact})[1], {1.0, -0.25, 0.0}) < 1e-15);
-	}
+	const bool exact = GENERATE(false, true);
+	REQUIRE(glm::distance(prism(corners, {0.25, false, exact})[1], {1.0, -0.25, 0.0}) < 1e-15);
 }
 
 TEST_CASE("volume: the clamp takes corners below 60 degrees to twice the distance, no other", "[volume][prism]")
 {
-	for (const double half_deg : {1e-5, 1.0, 20.0, 29.9, 30.1, 60.0, 80.0})
-	{
-		const nook::SinCos half = nook::sinCosOf(half_deg * nook::kPi / 180.0);
-		const Corners corners{{0, 0, 0}, {half.cos, -half.sin, 0}, {half.cos, half.sin, 0}};
-		const double moved = glm::distance(prism(corners, {1.0, false, false})[0], corners[0]);
-		REQUIRE(moved == Approx(std::min(2.0, 1.0 / half.sin)).epsilon(1e-9));
-		const double whole = glm::distance(prism(corners, {1.0, false, true})[0], corners[0]);
-		REQUIRE(whole == Approx(std::min(256.0, 1.0 / half.sin)).epsilon(1e-9));
-	}
+	const double half_deg = GENERATE(1e-5, 1.0, 20.0, 29.9, 30.1, 60.0, 80.0);
+	const nook::SinCos half = nook::sinCosOf(half_deg * nook::kPi / 180.0);
+	const Corners corners{{0, 0, 0}, {half.cos, -half.sin, 0}, {half.cos, half.sin, 0}};
+	const double moved = glm::distance(prism(corners, {1.0, false, false})[0], corners[0]);
+	REQUIRE(moved == Approx(std::min(2.0, 1.0 / half.sin)).epsilon(1e-9));
+	const double whole = glm::distance(prism(corners, {1.0, false, true})[0], corners[0]);
+	REQUIRE(whole == Approx(std::min(256.0, 1.0 / half.sin)).epsilon(1e-9));
 }
 
 TEST_CASE("volume: prisms are closed, convex and outward, from needles of 1e-7 to sixteen corners", "[volume][prism]")

@@ -4,8 +4,6 @@
 #include "small_volumes.h"
 #include "testing.h"
 
-#include "core/random.h"
-#include "scene/builtin.h"
 #include "shade/aov_gl_parts.h"
 #include "shade/gl_context.h"
 #include "volume/compensate.h"
@@ -267,50 +265,46 @@ TEST_CASE("volumes' frame: a cluster holds the eye as far as its volumes begin b
 		cluster.least[axis] = -1.0F;
 		cluster.most[axis] = 2.0F;
 	}
-	for (const double off : {-1.1, -1.0, 4.0, 4.1}) // from its lower end; the upper one is at 3
+	const double off = GENERATE(-1.1, -1.0, 4.0, 4.1); // from its lower end; the upper one is at 3
+	for (int axis = 0; axis < 3; ++axis)
 	{
-		for (int axis = 0; axis < 3; ++axis)
-		{
-			glm::dvec3 eye(100.5);
-			eye[axis] = 99.0 + off;
-			glm::dmat4 view(1.0);
-			view[3] = glm::dvec4(-eye, 1.0);
-			nook_volumes::Camera camera = cameraFor(settings().front(), view);
-			camera.bias = 0.8;
-			camera.position_error = 0.2;
-			nook_volumes::Frame frame;
-			REQUIRE(frame.set(nook_volumes::Header(), camera) == nullptr);
-			CHECK(frame.holdsEye(cluster) == (off == -1.0 || off == 4.0));
-		}
+		glm::dvec3 eye(100.5);
+		eye[axis] = 99.0 + off;
+		glm::dmat4 view(1.0);
+		view[3] = glm::dvec4(-eye, 1.0);
+		nook_volumes::Camera camera = cameraFor(settings().front(), view);
+		camera.bias = 0.8;
+		camera.position_error = 0.2;
+		nook_volumes::Frame frame;
+		REQUIRE(frame.set(nook_volumes::Header(), camera) == nullptr);
+		CHECK(frame.holdsEye(cluster) == (off == -1.0 || off == 4.0));
 	}
 }
 
 TEST_CASE("volumes' frame: projections of another convention are refused by its name", "[volume_draw]")
 {
-	for (const Setting& setting : settings())
+	const Setting setting = GENERATE(from_range(settings()));
+	const auto faultOf = [&setting](const glm::dmat4& projection)
 	{
-		const auto faultOf = [&setting](const glm::dmat4& projection)
-		{
-			Setting other = setting;
-			other.projection = projection;
-			nook_volumes::Frame frame;
-			const char* const fault = frame.set(nook_volumes::Header(), cameraFor(other, someView()));
-			return std::string(fault == nullptr ? "" : fault);
-		};
-		const glm::dmat4& p = setting.projection;
-		CHECK(faultOf(p).empty());
-		CHECK(faultOf(0.37 * p).empty());
-		glm::dmat4 left = p;
-		left[2] = -p[2];
-		const bool oblique = p[0][2] != 0.0 || p[1][2] != 0.0; // a parallel one has planes on both sides
-		CHECK(((oblique && p[3][3] != 0.0) || faultOf(left).find("left-handed") != std::string::npos));
-		CHECK(faultOf(-p).find("left-handed") != std::string::npos);
-		CHECK(faultOf(glm::transpose(p)).find("row-major") != std::string::npos);
-		glm::dmat4 broken = p;
-		broken[2][2] = std::nan("");
-		CHECK(faultOf(broken).find("NaN") != std::string::npos);
-		CHECK(faultOf(glm::dmat4(0.0)).find("skew") != std::string::npos);
-	}
+		Setting other = setting;
+		other.projection = projection;
+		nook_volumes::Frame frame;
+		const char* const fault = frame.set(nook_volumes::Header(), cameraFor(other, someView()));
+		return std::string(fault == nullptr ? "" : fault);
+	};
+	const glm::dmat4& p = setting.projection;
+	CHECK(faultOf(p).empty());
+	CHECK(faultOf(0.37 * p).empty());
+	glm::dmat4 left = p;
+	left[2] = -p[2];
+	const bool oblique = p[0][2] != 0.0 || p[1][2] != 0.0; // a parallel one has planes on both sides
+	CHECK(((oblique && p[3][3] != 0.0) || faultOf(left).find("left-handed") != std::string::npos));
+	CHECK(faultOf(-p).find("left-handed") != std::string::npos);
+	CHECK(faultOf(glm::transpose(p)).find("row-major") != std::string::npos);
+	glm::dmat4 broken = p;
+	broken[2][2] = std::nan("");
+	CHECK(faultOf(broken).find("NaN") != std::string::npos);
+	CHECK(faultOf(glm::dmat4(0.0)).find("skew") != std::string::npos);
 }
 
 TEST_CASE("volumes' frame: the shader reads depth back from a depth buffer of any projection", "[volume_draw]")

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Polygons made from triangles: equal area, convex, and independent of the tessellation.
 #include "level_files.h"
+#include "small_levels.h"
 #include "testing.h"
 
-#include "core/math.h"
-#include "core/random.h"
 #include "scene/builtin.h"
 #include "volume/evaluate.h"
 #include "volume/occluders.h"
@@ -18,27 +17,7 @@ const nook::RunSettings kRun{2, {}};
 
 struct Maker
 {
-	Level level;
-
-	Maker()
-	{
-		level.name = "made";
-		level.material_list.emplace_back();
-	}
-
-	uint32_t vertex(glm::dvec3 position, glm::vec2 uv = {})
-	{
-		level.positions.push_back(position);
-		level.normals.emplace_back(0.0F);
-		level.uvs.push_back(uv);
-		return static_cast<uint32_t>(level.positions.size() - 1);
-	}
-
-	void triangle(uint32_t a, uint32_t b, uint32_t c, uint32_t material = 0)
-	{
-		level.triangles.emplace_back(a, b, c);
-		level.materials.push_back(material);
-	}
+	Level level = emptyLevel();
 
 	// Cells of a grid where `keep` is true, as two triangles each, with alternating diagonals; vertices are never shared.
 	void grid(int count, const std::function<glm::dvec3(double, double)>& at, const std::function<bool(double, double)>& keep,
@@ -59,17 +38,17 @@ struct Maker
 				// From integers, so that adjacent corners are bit-identical.
 				const double u = static_cast<double>(i % count + (corner == 1 || corner == 2 ? 1 : 0)) / count;
 				const double v = static_cast<double>(i / count + (corner >= 2 ? 1 : 0)) / count;
-				corners[static_cast<std::size_t>(corner)] = vertex(at(u, v), glm::vec2(glm::dvec2(u, v)));
+				corners[static_cast<std::size_t>(corner)] = addVertex(level, at(u, v), glm::vec2(glm::dvec2(u, v)));
 			}
 			if (i % 2 == 0)
 			{
-				triangle(corners[0], corners[1], corners[2], material);
-				triangle(corners[0], corners[2], corners[3], material);
+				addTriangle(level, corners[0], corners[1], corners[2], material);
+				addTriangle(level, corners[0], corners[2], corners[3], material);
 			}
 			else
 			{
-				triangle(corners[1], corners[2], corners[3], material);
-				triangle(corners[1], corners[3], corners[0], material);
+				addTriangle(level, corners[1], corners[2], corners[3], material);
+				addTriangle(level, corners[1], corners[3], corners[0], material);
 			}
 		}
 		level.meshes = {{"made", 0, level.triangles.size()}};
@@ -80,17 +59,17 @@ struct Maker
 		std::array<uint32_t, 8> at{};
 		for (uint32_t i = 0; i < 8; ++i)
 		{
-			at[i] = vertex({(i & 1U) != 0 ? most.x : least.x, (i & 2U) != 0 ? most.y : least.y, (i & 4U) != 0 ? most.z : least.z});
+			at[i] = addVertex(
+				level, {(i & 1U) != 0 ? most.x : least.x, (i & 2U) != 0 ? most.y : least.y, (i & 4U) != 0 ? most.z : least.z});
 		}
 		for (const std::array<uint32_t, 4>& face :
 			 {std::array<uint32_t, 4>{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
 		{
 			const uint32_t b = at[face[inside_out ? 3 : 1]];
 			const uint32_t d = at[face[inside_out ? 1 : 3]];
-			triangle(at[face[0]], b, at[face[2]]);
-			triangle(at[face[0]], at[face[2]], d);
+			addTriangle(level, at[face[0]], b, at[face[2]]);
+			addTriangle(level, at[face[0]], at[face[2]], d);
 		}
-		level.meshes = {{"made", 0, level.triangles.size()}};
 	}
 };
 
@@ -194,7 +173,7 @@ Level ballWith(int slits)
 			p[(face + 1) % 3] = u / 8.0 - 1.0;
 			p[(face + 2) % 3] = sign * (v / 8.0 - 1.0);
 			p *= 0x1p20 / glm::length(p);
-			return ball.vertex(glm::dvec3(std::round(p.x), std::round(p.y), std::round(p.z)) * 0x1p-20);
+			return addVertex(ball.level, glm::dvec3(std::round(p.x), std::round(p.y), std::round(p.z)) * 0x1p-20);
 		};
 		for (int i = 0; i < 256; ++i)
 		{
@@ -202,18 +181,18 @@ Level ballWith(int slits)
 			const uint32_t b = at(i % 16 + 1, i / 16);
 			const uint32_t c = at(i % 16 + 1, i / 16 + 1);
 			const uint32_t d = at(i % 16, i / 16 + 1);
-			ball.triangle(a, b, c);
+			addTriangle(ball.level, a, b, c);
 			if (slits > 0 && i % 3 == 0)
 			{
 				slits -= 1;
-				const uint32_t middle = ball.vertex(0.5 * (ball.level.positions[a] + ball.level.positions[c]));
-				ball.triangle(a, middle, d);
-				ball.triangle(middle, c, d);
-				ball.triangle(a, c, middle); // without area
+				const uint32_t middle = addVertex(ball.level, 0.5 * (ball.level.positions[a] + ball.level.positions[c]));
+				addTriangle(ball.level, a, middle, d);
+				addTriangle(ball.level, middle, c, d);
+				addTriangle(ball.level, a, c, middle); // without area
 			}
 			else
 			{
-				ball.triangle(a, c, d);
+				addTriangle(ball.level, a, c, d);
 			}
 		}
 	}
@@ -224,19 +203,17 @@ Level ballWith(int slits)
 
 TEST_CASE("volume: a wall of 2, 200 and 20,000 triangles becomes the same polygon", "[volume][occluders]")
 {
-	for (const int count : {1, 10, 100})
-	{
-		Maker maker;
-		maker.grid(count, tilted, everywhere);
-		REQUIRE(maker.level.triangles.size() == static_cast<std::size_t>(2 * count * count));
-		const Occluding merged = occluders(maker.level);
-		REQUIRE(merged.occluders.polygons.size() == 1);
-		REQUIRE(merged.occluders.polygons[0].corner_count == 4);
-		REQUIRE(merged.counts.regions == 1);
-		Maker single;
-		single.grid(1, tilted, everywhere);
-		REQUIRE(listed(merged.occluders) == listed(occluders(single.level).occluders));
-	}
+	const int count = GENERATE(1, 10, 100);
+	Maker maker;
+	maker.grid(count, tilted, everywhere);
+	REQUIRE(maker.level.triangles.size() == static_cast<std::size_t>(2 * count * count));
+	const Occluding merged = occluders(maker.level);
+	REQUIRE(merged.occluders.polygons.size() == 1);
+	REQUIRE(merged.occluders.polygons[0].corner_count == 4);
+	REQUIRE(merged.counts.regions == 1);
+	Maker single;
+	single.grid(1, tilted, everywhere);
+	REQUIRE(listed(merged.occluders) == listed(occluders(single.level).occluders));
 }
 
 TEST_CASE("volume: walls with windows become the same polygons from any tessellation", "[volume][occluders]")
@@ -289,17 +266,16 @@ TEST_CASE("volume: regions that touch in corners keep their area", "[volume][occ
 TEST_CASE("volume: a disk of many corners is cut to sixteen a polygon", "[volume][occluders]")
 {
 	Maker maker;
-	const uint32_t centre = maker.vertex({0, 0, 0});
+	const uint32_t centre = addVertex(maker.level, {0, 0, 0});
 	for (int i = 0; i < 100; ++i)
 	{
 		const nook::SinCos at = nook::sinCosOf(2.0 * nook::kPi * i / 100.0);
-		maker.vertex({at.cos, 0.0, -at.sin});
+		addVertex(maker.level, {at.cos, 0.0, -at.sin});
 	}
 	for (uint32_t i = 0; i < 100; ++i)
 	{
-		maker.triangle(centre, 1 + i, 1 + (i + 1) % 100);
+		addTriangle(maker.level, centre, 1 + i, 1 + (i + 1) % 100);
 	}
-	maker.level.meshes = {{"made", 0, 100}};
 	const Occluding merged = occluders(maker.level);
 	requireSound(merged.occluders, 1e-4);
 	REQUIRE(merged.counts.polygons == 8);
@@ -310,22 +286,19 @@ TEST_CASE("volume: a disk of many corners is cut to sixteen a polygon", "[volume
 TEST_CASE("volume: duplicates go, and a triangle with its back becomes one polygon of two sides", "[volume][occluders]")
 {
 	Maker maker;
-	const uint32_t a = maker.vertex({0, 0, 0});
-	const uint32_t b = maker.vertex({1, 0, 0});
-	const uint32_t c = maker.vertex({0, 1, 0});
-	maker.triangle(a, b, c);
-	maker.triangle(b, c, a);
-	maker.triangle(maker.vertex({0, 1, 0}), b, a); // another vertex at the same place
-	maker.level.meshes = {{"made", 0, 3}};
-	for (const nook::Sides sides : {nook::Sides::automatic, nook::Sides::oriented})
-	{
-		nook::OccluderSettings settings{.sides = sides};
-		const Occluding merged = occluders(maker.level, settings);
-		REQUIRE(merged.counts.polygons == 1);
-		REQUIRE(merged.counts.duplicates == 1);
-		REQUIRE(merged.counts.reversed == 1);
-		REQUIRE(merged.occluders.polygons[0].two_sided);
-	}
+	const uint32_t a = addVertex(maker.level, {0, 0, 0});
+	const uint32_t b = addVertex(maker.level, {1, 0, 0});
+	const uint32_t c = addVertex(maker.level, {0, 1, 0});
+	addTriangle(maker.level, a, b, c);
+	addTriangle(maker.level, b, c, a);
+	addTriangle(maker.level, addVertex(maker.level, {0, 1, 0}), b, a); // another vertex at the same place
+	const nook::Sides sides = GENERATE(nook::Sides::automatic, nook::Sides::oriented);
+	nook::OccluderSettings settings{.sides = sides};
+	const Occluding merged = occluders(maker.level, settings);
+	REQUIRE(merged.counts.polygons == 1);
+	REQUIRE(merged.counts.duplicates == 1);
+	REQUIRE(merged.counts.reversed == 1);
+	REQUIRE(merged.occluders.polygons[0].two_sided);
 }
 
 TEST_CASE("volume: closed surfaces are oriented; sheets, rooms and masks have two sides", "[volume][occluders]")
@@ -392,47 +365,45 @@ TEST_CASE("volume: triangles without area change nothing about a closed scan's s
 	const Level whole = ballWith(0);
 	REQUIRE(occluders(whole).counts.closed == 1);
 	REQUIRE(occluders(whole).counts.two_sided == 0);
-	for (const bool cleaned : {false, true})
+	const bool cleaned = GENERATE(false, true);
+	Level level = ballWith(80);
+	if (cleaned)
 	{
-		Level level = ballWith(80);
-		if (cleaned)
+		for (std::size_t i = level.triangles.size(); i-- > 0;)
 		{
-			for (std::size_t i = level.triangles.size(); i-- > 0;)
+			const glm::uvec3& t = level.triangles[i];
+			const std::vector<glm::dvec3>& p = level.positions;
+			if (glm::length(glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x])) == 0.0)
 			{
-				const glm::uvec3& t = level.triangles[i];
-				const std::vector<glm::dvec3>& p = level.positions;
-				if (glm::length(glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x])) == 0.0)
-				{
-					level.triangles.erase(level.triangles.begin() + static_cast<std::ptrdiff_t>(i));
-					level.materials.erase(level.materials.begin() + static_cast<std::ptrdiff_t>(i));
-				}
+				level.triangles.erase(level.triangles.begin() + static_cast<std::ptrdiff_t>(i));
+				level.materials.erase(level.materials.begin() + static_cast<std::ptrdiff_t>(i));
 			}
-			REQUIRE(level.triangles.size() == whole.triangles.size() + 80);
 		}
-		const Occluding made = occluders(level);
-		CHECK(made.counts.components == 1);
-		CHECK(made.counts.closed == 1);
-		CHECK(made.counts.two_sided == 0);
-		CHECK(made.counts.thin == (cleaned ? 0U : 80U));
-		CHECK(areaOf(made.occluders) == Approx(areaOf(whole)).epsilon(1e-6));
-		// Equal volumes, except that some are halved.
-		nook::VolumeSet set;
-		set.distance_m = 0.5;
-		set.exact_bounds = true;
-		nook::VolumeSet expected = set;
-		set.occluders = made.occluders;
-		expected.occluders = occluders(whole).occluders;
-		const nook::VolumeEvaluator of_set(set, kRun);
-		const nook::VolumeEvaluator of_whole(expected, kRun);
-		nook::Random random(8);
-		for (int i = 0; i < 500; ++i)
+		REQUIRE(level.triangles.size() == whole.triangles.size() + 80);
+	}
+	const Occluding made = occluders(level);
+	CHECK(made.counts.components == 1);
+	CHECK(made.counts.closed == 1);
+	CHECK(made.counts.two_sided == 0);
+	CHECK(made.counts.thin == (cleaned ? 0U : 80U));
+	CHECK(areaOf(made.occluders) == Approx(areaOf(whole)).epsilon(1e-6));
+	// Equal volumes, except that some are halved.
+	nook::VolumeSet set;
+	set.distance_m = 0.5;
+	set.exact_bounds = true;
+	nook::VolumeSet expected = set;
+	set.occluders = made.occluders;
+	expected.occluders = occluders(whole).occluders;
+	const nook::VolumeEvaluator of_set(set, kRun);
+	const nook::VolumeEvaluator of_whole(expected, kRun);
+	nook::Random random(8);
+	for (int i = 0; i < 500; ++i)
+	{
+		const glm::dvec3 way = glm::normalize(glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 0.5);
+		for (const double radius : {0.9, 1.05, 1.3})
 		{
-			const glm::dvec3 way = glm::normalize(glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 0.5);
-			for (const double radius : {0.9, 1.05, 1.3})
-			{
-				const double sum = of_whole.occlusion(radius * way, -way);
-				REQUIRE(of_set.occlusion(radius * way, -way) == Approx(sum).margin(0.01));
-			}
+			const double sum = of_whole.occlusion(radius * way, -way);
+			REQUIRE(of_set.occlusion(radius * way, -way) == Approx(sum).margin(0.01));
 		}
 	}
 }
@@ -584,27 +555,26 @@ TEST_CASE("volume: coverage agrees with a dense count", "[volume][occluders]")
 
 TEST_CASE("volume: built-in levels keep their area, on any number of threads", "[volume][occluders]")
 {
-	for (const std::string name : {"cornell", "courtyard", "suburb", "foliage", "heightfield:20000", "cave:20000", "nulls"})
-	{
-		INFO(name);
-		const Level level = nook::builtinLevel(name);
-		const Occluding merged = occluders(level);
-		requireSound(merged.occluders, 1e-4);
-		REQUIRE(merged.counts.fallbacks == 0);
-		REQUIRE(merged.counts.clear == 0);
-		REQUIRE(areaOf(merged.occluders) == Approx(areaOf(level)).epsilon(1e-6));
-		REQUIRE(merged.counts.polygons < merged.counts.triangles);
-		const Occluding cut = nook::occludersOf(level, {}, kRun);
-		requireSound(cut.occluders, 1e-4);
-		REQUIRE(areaOf(cut.occluders) == Approx(areaOf(level)).epsilon(1e-6));
-		nook::OccluderSettings settings{.extent = 0.0};
-		const Occluding alone = nook::occludersOf(level, settings, {1, {}});
-		REQUIRE(alone.occluders.corners == merged.occluders.corners);
-		REQUIRE(std::equal(alone.occluders.polygons.begin(), alone.occluders.polygons.end(), merged.occluders.polygons.begin(),
-						   merged.occluders.polygons.end(),
-						   [](const nook::Occluder& a, const nook::Occluder& b)
-						   { return a.alpha == b.alpha && a.first_corner == b.first_corner && a.two_sided == b.two_sided; }));
-	}
+	const auto name =
+		GENERATE(as<std::string>{}, "cornell", "courtyard", "suburb", "foliage", "heightfield:20000", "cave:20000", "nulls");
+	INFO(name);
+	const Level level = nook::builtinLevel(name);
+	const Occluding merged = occluders(level);
+	requireSound(merged.occluders, 1e-4);
+	REQUIRE(merged.counts.fallbacks == 0);
+	REQUIRE(merged.counts.clear == 0);
+	REQUIRE(areaOf(merged.occluders) == Approx(areaOf(level)).epsilon(1e-6));
+	REQUIRE(merged.counts.polygons < merged.counts.triangles);
+	const Occluding cut = nook::occludersOf(level, {}, kRun);
+	requireSound(cut.occluders, 1e-4);
+	REQUIRE(areaOf(cut.occluders) == Approx(areaOf(level)).epsilon(1e-6));
+	nook::OccluderSettings settings{.extent = 0.0};
+	const Occluding alone = nook::occludersOf(level, settings, {1, {}});
+	REQUIRE(alone.occluders.corners == merged.occluders.corners);
+	REQUIRE(std::equal(alone.occluders.polygons.begin(), alone.occluders.polygons.end(), merged.occluders.polygons.begin(),
+					   merged.occluders.polygons.end(),
+					   [](const nook::Occluder& a, const nook::Occluder& b)
+					   { return a.alpha == b.alpha && a.first_corner == b.first_corner && a.two_sided == b.two_sided; }));
 }
 
 TEST_CASE("volume: without merging there is one polygon a triangle", "[volume][occluders]")
@@ -643,13 +613,11 @@ TEST_CASE("volume: a closed surface is simplified unless its backs are known to 
 	nook::OccluderSettings settings;
 	settings.detail = 0.02;
 	REQUIRE(occluders(level, settings).counts.proxies < level.triangles.size() / 2);
-	for (const uint8_t is_idle : {uint8_t{0}, uint8_t{1}})
-	{
-		settings.one_sided.assign(level.triangles.size(), is_idle);
-		const nook::OccluderCounts counts = occluders(level, settings).counts;
-		REQUIRE((counts.proxies == level.triangles.size()) == (is_idle == 0));
-		REQUIRE(counts.two_sided == 0);
-	}
+	const uint8_t is_idle = GENERATE(uint8_t{0}, uint8_t{1});
+	settings.one_sided.assign(level.triangles.size(), is_idle);
+	const nook::OccluderCounts counts = occluders(level, settings).counts;
+	REQUIRE((counts.proxies == level.triangles.size()) == (is_idle == 0));
+	REQUIRE(counts.two_sided == 0);
 }
 
 TEST_CASE("volume: long polygons are cut, whatever their tessellation", "[volume][occluders]")
@@ -704,15 +672,14 @@ TEST_CASE("volume: a surface that overlaps itself keeps all of its area", "[volu
 	for (int i = 0; i <= 30; ++i)
 	{
 		const nook::SinCos at = nook::sinCosOf(3.0 * nook::kPi * i / 30.0);
-		maker.vertex({at.cos, at.sin, 0.0});
-		maker.vertex({2.0 * at.cos, 2.0 * at.sin, 0.0});
+		addVertex(maker.level, {at.cos, at.sin, 0.0});
+		addVertex(maker.level, {2.0 * at.cos, 2.0 * at.sin, 0.0});
 	}
 	for (uint32_t i = 0; i < 30; ++i)
 	{
-		maker.triangle(2 * i, 2 * i + 1, 2 * i + 2);
-		maker.triangle(2 * i + 2, 2 * i + 1, 2 * i + 3);
+		addTriangle(maker.level, 2 * i, 2 * i + 1, 2 * i + 2);
+		addTriangle(maker.level, 2 * i + 2, 2 * i + 1, 2 * i + 3);
 	}
-	maker.level.meshes = {{"made", 0, maker.level.triangles.size()}};
 	const Occluding merged = occluders(maker.level);
 	requireSound(merged.occluders, 1e-4);
 	REQUIRE(merged.counts.regions == 1);

@@ -2,36 +2,21 @@
 // Volumes in clusters and with 16-bit corners: no losses beyond the stated ones.
 #include "small_levels.h"
 #include "small_volumes.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/file.h"
-#include "core/random.h"
 #include "core/text.h"
 #include "scene/load.h"
-#include "volume/packed.h"
 #include "volume/volume_glb.h"
-#include "volume/volumes.h"
 
 #include <meshoptimizer.h>
 
 namespace
 {
 
-using Corners = std::vector<glm::dvec3>;
-
 Corners cornersOf(const VolumeSet& volumes, std::size_t polygon)
 {
-	const Occluder& occluder = volumes.occluders.polygons[polygon];
-	const auto first = volumes.occluders.corners.begin() + occluder.first_corner;
-	return {first, first + occluder.corner_count};
-}
-
-void addPolygon(VolumeSet& volumes, const Corners& corners, float alpha = 1.0F, bool two_sided = false)
-{
-	volumes.occluders.polygons.push_back(
-		{static_cast<uint32_t>(volumes.occluders.corners.size()), static_cast<uint32_t>(corners.size()), 0, alpha, two_sided});
-	volumes.occluders.corners.insert(volumes.occluders.corners.end(), corners.begin(), corners.end());
+	const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(volumes.occluders.polygons[polygon]);
+	return {corners.begin(), corners.end()};
 }
 
 // Polygons of 3 to 8 corners on circles and ellipses anywhere in a box, from millimetres to tens of metres in size.
@@ -59,7 +44,8 @@ VolumeSet randomVolumes(std::size_t count, glm::dvec3 middle = {})
 			const double angle = turn + 6.283185307179586 * i / corners;
 			made.push_back(at + size * (std::cos(angle) * u + std::sin(angle) * v));
 		}
-		addPolygon(volumes, made, static_cast<float>(number(0.01, 1.0)), random.below(2) == 1);
+		const auto alpha = static_cast<float>(number(0.01, 1.0));
+		volumes.occluders.add({.alpha = alpha, .two_sided = random.below(2) == 1}, made);
 	}
 	return volumes;
 }
@@ -208,69 +194,66 @@ TEST_CASE("volume: clusters are tight, and neighbours follow one another", "[vol
 
 TEST_CASE("volume: 16-bit corners are no further away than stated, convex, and the same when packed again", "[volume][packed]")
 {
-	for (const glm::dvec3 middle : {glm::dvec3(0.0), glm::dvec3(1e5, -3e4, 2e5)})
+	const glm::dvec3 middle = GENERATE(glm::dvec3(0.0), glm::dvec3(1e5, -3e4, 2e5));
+	const VolumeSet exact = clustered(randomVolumes(2000, middle));
+	const PackedVolumes packed = packVolumes(exact, {}, {});
+	const VolumeSet rounded = unpacked(packed, exact);
+	// A step and a half on each axis of the widest clusters, about 100 m: 2^-9 m. Much less across a polygon.
+	CHECK(packed.greatest_error_m < 2.6 * 0x1p-9);
+	CHECK(packed.plane_error_m < 0.5 * packed.greatest_error_m);
+	CHECK(packed.plane_error_m > 0.0);
+	CHECK(packed.flat_polygons < 20);
+	CHECK(rounded.occluders.polygons.size() + packed.flat_polygons == exact.occluders.polygons.size());
+	REQUIRE(packed.clusters.size() == exact.clusters.size());
+	double greatest = 0.0;
+	std::size_t narrow = 0;
+	for (std::size_t p = 0; p < rounded.occluders.polygons.size(); ++p)
 	{
-		const VolumeSet exact = clustered(randomVolumes(2000, middle));
-		const PackedVolumes packed = packVolumes(exact, {}, {});
-		const VolumeSet rounded = unpacked(packed, exact);
-		// A step and a half on each axis of the widest clusters, about 100 m: 2^-9 m. Much less across a polygon.
-		CHECK(packed.greatest_error_m < 2.6 * 0x1p-9);
-		CHECK(packed.plane_error_m < 0.5 * packed.greatest_error_m);
-		CHECK(packed.plane_error_m > 0.0);
-		CHECK(packed.flat_polygons < 20);
-		CHECK(rounded.occluders.polygons.size() + packed.flat_polygons == exact.occluders.polygons.size());
-		REQUIRE(packed.clusters.size() == exact.clusters.size());
-		double greatest = 0.0;
-		std::size_t narrow = 0;
-		for (std::size_t p = 0; p < rounded.occluders.polygons.size(); ++p)
+		const Corners corners = cornersOf(rounded, p);
+		const glm::dvec3 front = frontOf(corners);
+		for (std::size_t i = 0; i < corners.size(); ++i)
 		{
-			const Corners corners = cornersOf(rounded, p);
-			const glm::dvec3 front = frontOf(corners);
-			for (std::size_t i = 0; i < corners.size(); ++i)
+			const glm::dvec3 a = corners[i];
+			const glm::dvec3 b = corners[(i + 1) % corners.size()];
+			const glm::dvec3 c = corners[(i + 2) % corners.size()];
+			narrow += glm::dot(glm::cross(b - a, c - b), front) > 0.0 ? 0U : 1U;
+			double nearest = 1e300;
+			for (const glm::dvec3 corner : exact.occluders.corners)
 			{
-				const glm::dvec3 a = corners[i];
-				const glm::dvec3 b = corners[(i + 1) % corners.size()];
-				const glm::dvec3 c = corners[(i + 2) % corners.size()];
-				narrow += glm::dot(glm::cross(b - a, c - b), front) > 0.0 ? 0U : 1U;
-				double nearest = 1e300;
-				for (const glm::dvec3 corner : exact.occluders.corners)
-				{
-					nearest = std::min(nearest, glm::distance(corner, a));
-				}
-				greatest = std::max(greatest, nearest);
+				nearest = std::min(nearest, glm::distance(corner, a));
 			}
+			greatest = std::max(greatest, nearest);
 		}
-		CHECK(narrow == 0);
-		CHECK(greatest <= packed.greatest_error_m);
-		CHECK(greatest > 0.3 * packed.greatest_error_m);
-
-		const PackedVolumes again = packVolumes(rounded, {}, {});
-		CHECK(again.greatest_error_m == 0.0);
-		CHECK(again.flat_corners == 0);
-		CHECK(unpacked(again, rounded).occluders.corners == rounded.occluders.corners);
-		const VolumeSet shifted = unpacked(again, rounded);
-		for (std::size_t i = 0; i < shifted.clusters.size(); ++i)
-		{
-			REQUIRE(shifted.clusters[i].polygon_count == rounded.clusters[i].polygon_count);
-		}
-		RunSettings threads;
-		threads.threads = 3;
-		const PackedVolumes parallel = packVolumes(exact, {}, threads);
-		CHECK((equalBytes(parallel.corners, packed.corners) && equalBytes(parallel.clusters, packed.clusters)));
 	}
+	CHECK(narrow == 0);
+	CHECK(greatest <= packed.greatest_error_m);
+	CHECK(greatest > 0.3 * packed.greatest_error_m);
+
+	const PackedVolumes again = packVolumes(rounded, {}, {});
+	CHECK(again.greatest_error_m == 0.0);
+	CHECK(again.flat_corners == 0);
+	CHECK(unpacked(again, rounded).occluders.corners == rounded.occluders.corners);
+	const VolumeSet shifted = unpacked(again, rounded);
+	for (std::size_t i = 0; i < shifted.clusters.size(); ++i)
+	{
+		REQUIRE(shifted.clusters[i].polygon_count == rounded.clusters[i].polygon_count);
+	}
+	RunSettings threads;
+	threads.threads = 3;
+	const PackedVolumes parallel = packVolumes(exact, {}, threads);
+	CHECK((equalBytes(parallel.corners, packed.corners) && equalBytes(parallel.clusters, packed.clusters)));
 }
 
 TEST_CASE("volume: coordinates that are multiples of the step stay as they are, however far away", "[volume][packed]")
 {
-	for (const double away : {0.0, 8192.0, 1e6 + 0.25})
-	{
-		VolumeSet volumes;
-		addPolygon(volumes, {{away, 0.5, 0.25}, {away + 16.0, 0.5, 0.25}, {away + 16.0, 12.125, 0.25}, {away, 12.125, 0.25}});
-		const VolumeSet exact = clustered(volumes);
-		const PackedVolumes packed = packVolumes(exact, {}, {});
-		CHECK(packed.greatest_error_m == 0.0);
-		CHECK(unpacked(packed, exact).occluders.corners == exact.occluders.corners);
-	}
+	const double away = GENERATE(0.0, 8192.0, 1e6 + 0.25);
+	VolumeSet volumes;
+	volumes.occluders.add({},
+						  Corners{{away, 0.5, 0.25}, {away + 16.0, 0.5, 0.25}, {away + 16.0, 12.125, 0.25}, {away, 12.125, 0.25}});
+	const VolumeSet exact = clustered(volumes);
+	const PackedVolumes packed = packVolumes(exact, {}, {});
+	CHECK(packed.greatest_error_m == 0.0);
+	CHECK(unpacked(packed, exact).occluders.corners == exact.occluders.corners);
 }
 
 TEST_CASE("volume: what 16 bits make flat is left out and counted", "[volume][packed]")
@@ -278,8 +261,9 @@ TEST_CASE("volume: what 16 bits make flat is left out and counted", "[volume][pa
 	VolumeSet volumes;
 	volumes.distance_m = 1.5;
 	// A corner in the middle of an edge, one slightly inside, and a triangle smaller than a step of a cluster of 64 m.
-	addPolygon(volumes, {{0.0, 0.0, 0.0}, {32.0, 0.0, 0.0}, {64.0, 0.0, 0.0}, {64.0, 0.0, -64.0}, {0.0, 0.0, -64.0}});
-	addPolygon(volumes, {{0.0, 1.0, 0.0}, {64.0, 1.0, 0.0}, {64.0, 1.0, -64.0}, {32.0, 1.0, -64.00001}, {0.0, 1.0, -64.0}}, 0.5F);
+	volumes.occluders.add({}, Corners{{0.0, 0.0, 0.0}, {32.0, 0.0, 0.0}, {64.0, 0.0, 0.0}, {64.0, 0.0, -64.0}, {0.0, 0.0, -64.0}});
+	volumes.occluders.add(
+		{.alpha = 0.5F}, Corners{{0.0, 1.0, 0.0}, {64.0, 1.0, 0.0}, {64.0, 1.0, -64.0}, {32.0, 1.0, -64.00001}, {0.0, 1.0, -64.0}});
 	const VolumeSet two = clustered(volumes);
 	const PackedVolumes packed = packVolumes(two, {}, {});
 	CHECK(packed.flat_corners == 2);
@@ -289,7 +273,7 @@ TEST_CASE("volume: what 16 bits make flat is left out and counted", "[volume][pa
 	CHECK(packed.polygons[0].alpha == 65535); // the larger contribution comes first
 	CHECK(packed.polygons[1].alpha == 32768);
 
-	addPolygon(volumes, {{1.0, 2.0, 1.0}, {1.00001, 2.0, 1.0}, {1.00001, 2.0, 1.00001}});
+	volumes.occluders.add({}, Corners{{1.0, 2.0, 1.0}, {1.00001, 2.0, 1.0}, {1.00001, 2.0, 1.00001}});
 	VolumeSet three = clustered(volumes);
 	REQUIRE(three.clusters.size() == 2); // very different sizes are kept apart
 	CHECK(packVolumes(three, {}, {}).flat_polygons == 0);
@@ -305,19 +289,17 @@ TEST_CASE("volume: a level of any size keeps what it keeps in metres", "[volume]
 	const VolumeSet whole = clustered(randomVolumes(500));
 	const PackedVolumes expected = packVolumes(whole, {}, {});
 	REQUIRE(expected.polygons.size() > 490);
-	for (const double scale : {0x1p-10, 0x1p-19, 0x1p20}) // a kilometre as unit, a distance of 1.4 micrometres, a millimetre
+	const double scale = GENERATE(0x1p-10, 0x1p-19, 0x1p20); // a kilometre as unit, a distance of 1.4 micrometres, a millimetre
+	VolumeSet scaled = whole;
+	scaled.distance_m *= scale;
+	for (glm::dvec3& corner : scaled.occluders.corners)
 	{
-		VolumeSet scaled = whole;
-		scaled.distance_m *= scale;
-		for (glm::dvec3& corner : scaled.occluders.corners)
-		{
-			corner *= scale;
-		}
-		const PackedVolumes packed = packVolumes(scaled, {}, {});
-		CHECK(packed.flat_polygons == expected.flat_polygons);
-		CHECK(equalBytes(packed.corners, expected.corners));
-		CHECK(equalBytes(packed.polygons, expected.polygons));
+		corner *= scale;
 	}
+	const PackedVolumes packed = packVolumes(scaled, {}, {});
+	CHECK(packed.flat_polygons == expected.flat_polygons);
+	CHECK(equalBytes(packed.corners, expected.corners));
+	CHECK(equalBytes(packed.polygons, expected.polygons));
 }
 
 TEST_CASE("volume: prisms are closed, face outward, and are those of the rounded polygons", "[volume][packed]")
@@ -406,47 +388,45 @@ TEST_CASE("emit: a file above its limit is refused with the options that would m
 TEST_CASE("emit: volumes come back from their file as 16 bits left them, in both layouts, compressed or not", "[emit][volume]")
 {
 	const TemporaryFolder folder;
-	for (const glm::dvec3 middle : {glm::dvec3(0.0), glm::dvec3(1e5, 0.0, -9e4)})
+	const glm::dvec3 middle = GENERATE(glm::dvec3(0.0), glm::dvec3(1e5, 0.0, -9e4));
+	VolumeSet volumes = randomVolumes(700, middle);
+	volumes.exact_bounds = true;
+	volumes.compensation.range = 3.5;
+	volumes.compensation.occlusion.fill(0.25);
+	volumes.compensation.occlusion.back() = 0.75;
+	volumes = clustered(volumes, 100);
+	const VolumeSet rounded = unpacked(packVolumes(volumes, {}, {}), volumes);
+	std::map<std::string, std::size_t> sizes;
+	for (const VolumeLayout layout : {VolumeLayout::polygons, VolumeLayout::prisms})
 	{
-		VolumeSet volumes = randomVolumes(700, middle);
-		volumes.exact_bounds = true;
-		volumes.compensation.range = 3.5;
-		volumes.compensation.occlusion.fill(0.25);
-		volumes.compensation.occlusion.back() = 0.75;
-		volumes = clustered(volumes, 100);
-		const VolumeSet rounded = unpacked(packVolumes(volumes, {}, {}), volumes);
-		std::map<std::string, std::size_t> sizes;
-		for (const VolumeLayout layout : {VolumeLayout::polygons, VolumeLayout::prisms})
+		for (const bool compress : {false, true})
 		{
-			for (const bool compress : {false, true})
-			{
-				const std::string path = folder / "v.glb";
-				const VolumeFileSettings settings{layout, compress};
-				const VolumeFile file = volumeGlb(volumes, settings, "level \"x\"", "nook test", {});
-				RunSettings threads;
-				threads.threads = 3;
-				CHECK(volumeGlb(volumes, settings, "level \"x\"", "nook test", threads).bytes == file.bytes);
-				writeFile(path, file.bytes);
-				CHECK(holdsVolumes(file.bytes));
-				VolumeFileFacts facts;
-				CHECK(sameVolumes(readVolumes(path, facts), rounded));
-				CHECK(facts.level == "level \"x\"");
-				CHECK(facts.generator == "nook test");
-				CHECK(facts.layout == layout);
-				CHECK(facts.compressed == compress);
-				CHECK(facts.greatest_error_m == file.packed.greatest_error_m);
-				CHECK(facts.vertices == (layout == VolumeLayout::prisms ? file.packed.vertices.size() : 0));
-				CHECK(facts.indices == file.packed.indices.size());
-				nook_volumes::Volumes opened;
-				REQUIRE(ExactBytes(file.bytes).open(opened) == nullptr);
-				sizes[std::string(layout == VolumeLayout::prisms ? "prisms" : "polygons") + (compress ? " compressed" : "")] =
-					file.bytes.size();
-			}
+			const std::string path = folder / "v.glb";
+			const VolumeFileSettings settings{layout, compress};
+			const VolumeFile file = volumeGlb(volumes, settings, "level \"x\"", "nook test", {});
+			RunSettings threads;
+			threads.threads = 3;
+			CHECK(volumeGlb(volumes, settings, "level \"x\"", "nook test", threads).bytes == file.bytes);
+			writeFile(path, file.bytes);
+			CHECK(holdsVolumes(file.bytes));
+			VolumeFileFacts facts;
+			CHECK(sameVolumes(readVolumes(path, facts), rounded));
+			CHECK(facts.level == "level \"x\"");
+			CHECK(facts.generator == "nook test");
+			CHECK(facts.layout == layout);
+			CHECK(facts.compressed == compress);
+			CHECK(facts.greatest_error_m == file.packed.greatest_error_m);
+			CHECK(facts.vertices == (layout == VolumeLayout::prisms ? file.packed.vertices.size() : 0));
+			CHECK(facts.indices == file.packed.indices.size());
+			nook_volumes::Volumes opened;
+			REQUIRE(ExactBytes(file.bytes).open(opened) == nullptr);
+			sizes[std::string(layout == VolumeLayout::prisms ? "prisms" : "polygons") + (compress ? " compressed" : "")] =
+				file.bytes.size();
 		}
-		CHECK(sizes["polygons compressed"] < sizes["polygons"]);
-		CHECK(sizes["prisms compressed"] < sizes["prisms"]);
-		CHECK(sizes["polygons"] < sizes["prisms"]);
 	}
+	CHECK(sizes["polygons compressed"] < sizes["polygons"]);
+	CHECK(sizes["prisms compressed"] < sizes["prisms"]);
+	CHECK(sizes["polygons"] < sizes["prisms"]);
 }
 
 TEST_CASE("emit: compressed polygons share corners and are read back unchanged", "[emit][volume]")
@@ -457,7 +437,7 @@ TEST_CASE("emit: compressed polygons share corners and are read back unchanged",
 	for (int i = 0; i < kSide * kSide; ++i) // a honeycomb on a slope, and its triangles above
 	{
 		const glm::dvec2 at(2 * (i % kSide) + i / kSide, 2 * (i / kSide));
-		std::vector<glm::dvec3> corners;
+		Corners corners;
 		for (const glm::dvec2 corner : {glm::dvec2(0, 1), {1, 0}, {2, 1}, {2, 2}, {1, 3}, {0, 2}})
 		{
 			corners.emplace_back(0.0625 * (at + corner), 0.01 * (at.x + corner.x));
@@ -467,7 +447,7 @@ TEST_CASE("emit: compressed polygons share corners and are read back unchanged",
 		{
 			corner.z += 0.3;
 		}
-		volumes.occluders.add({}, std::vector{corners[0], corners[2], corners[4]});
+		volumes.occluders.add({}, Corners{corners[0], corners[2], corners[4]});
 	}
 	volumes = clustered(volumes);
 	const VolumeSet plain = unpacked(packVolumes(volumes, {}, {}), volumes);
@@ -513,35 +493,33 @@ TEST_CASE("emit: a reader without a decoder refuses compressed volumes and reads
 TEST_CASE("emit: the scene of a volume file is what its arrays hold", "[emit][volume]")
 {
 	const TemporaryFolder folder;
-	for (const glm::dvec3 middle : {glm::dvec3(0.0), glm::dvec3(1e5, 0.0, -9e4)})
+	const glm::dvec3 middle = GENERATE(glm::dvec3(0.0), glm::dvec3(1e5, 0.0, -9e4));
+	const VolumeSet volumes = clustered(randomVolumes(300, middle));
+	const VolumeFile polygons = volumeGlb(volumes, {}, "test", "nook test", {});
+	const VolumeSet rounded = unpacked(polygons.packed, volumes);
+	writeFile(folder / "v.glb", polygons.bytes);
+	const Level level = loadLevel(folder / "v.glb", {}, {}).level;
+	CHECK(level.triangles.size() == polygons.packed.indices.size() / 3);
+	std::set<std::array<double, 3>> corners;
+	for (const glm::dvec3 p : rounded.occluders.corners)
 	{
-		const VolumeSet volumes = clustered(randomVolumes(300, middle));
-		const VolumeFile polygons = volumeGlb(volumes, {}, "test", "nook test", {});
-		const VolumeSet rounded = unpacked(polygons.packed, volumes);
-		writeFile(folder / "v.glb", polygons.bytes);
-		const Level level = loadLevel(folder / "v.glb", {}, {}).level;
-		CHECK(level.triangles.size() == polygons.packed.indices.size() / 3);
-		std::set<std::array<double, 3>> corners;
-		for (const glm::dvec3 p : rounded.occluders.corners)
-		{
-			corners.insert({p.x, p.y, p.z});
-		}
-		const std::size_t found = sumOver(level.positions, [&](const glm::dvec3 p) { return corners.count({p.x, p.y, p.z}); });
-		CHECK(found == level.positions.size());
-
-		const VolumeFile prisms = volumeGlb(volumes, {VolumeLayout::prisms, false}, "test", "nook test", {});
-		writeFile(folder / "v.glb", prisms.bytes);
-		const Bounds bounds = boundsOf(loadLevel(folder / "v.glb", {}, {}).level);
-		glm::dvec3 least(1e300);
-		glm::dvec3 most(-1e300);
-		for (const VolumeCluster& cluster : rounded.clusters)
-		{
-			least = glm::min(least, cluster.least);
-			most = glm::max(most, cluster.most);
-		}
-		CHECK(glm::distance(bounds.least, least) < 0.01);
-		CHECK(glm::distance(bounds.most, most) < 0.01);
+		corners.insert({p.x, p.y, p.z});
 	}
+	const std::size_t found = sumOver(level.positions, [&](const glm::dvec3 p) { return corners.count({p.x, p.y, p.z}); });
+	CHECK(found == level.positions.size());
+
+	const VolumeFile prisms = volumeGlb(volumes, {VolumeLayout::prisms, false}, "test", "nook test", {});
+	writeFile(folder / "v.glb", prisms.bytes);
+	const Bounds bounds = boundsOf(loadLevel(folder / "v.glb", {}, {}).level);
+	glm::dvec3 least(1e300);
+	glm::dvec3 most(-1e300);
+	for (const VolumeCluster& cluster : rounded.clusters)
+	{
+		least = glm::min(least, cluster.least);
+		most = glm::max(most, cluster.most);
+	}
+	CHECK(glm::distance(bounds.least, least) < 0.01);
+	CHECK(glm::distance(bounds.most, most) < 0.01);
 }
 
 const std::array<VolumeFileSettings, 3> kPrismsPackedShared{
@@ -550,31 +528,29 @@ const std::array<VolumeFileSettings, 3> kPrismsPackedShared{
 TEST_CASE("emit: every truncation of a volume file is refused", "[emit][volume]")
 {
 	const VolumeSet volumes = clustered(randomVolumes(12), 5);
-	for (const VolumeFileSettings& settings : kPrismsPackedShared)
+	const VolumeFileSettings settings = GENERATE(from_range(kPrismsPackedShared));
+	const std::string whole = glbOf(volumes, settings);
+	for (std::size_t size = 0; size < whole.size(); ++size)
 	{
-		const std::string whole = glbOf(volumes, settings);
-		for (std::size_t size = 0; size < whole.size(); ++size)
+		std::string part = whole.substr(0, size);
+		nook_volumes::Volumes opened;
+		REQUIRE(ExactBytes(part).open(opened) != nullptr);
+		if (size >= 12) // corrects the file's length; and that of the chunk
 		{
-			std::string part = whole.substr(0, size);
-			nook_volumes::Volumes opened;
+			const auto length = static_cast<uint32_t>(size);
+			std::memcpy(part.data() + 8, &length, sizeof length);
 			REQUIRE(ExactBytes(part).open(opened) != nullptr);
-			if (size >= 12) // corrects the file's length; and that of the chunk
+			uint32_t text = 0;
+			std::memcpy(&text, whole.data() + 12, sizeof text);
+			if (size >= 28 + text)
 			{
-				const auto length = static_cast<uint32_t>(size);
-				std::memcpy(part.data() + 8, &length, sizeof length);
-				REQUIRE(ExactBytes(part).open(opened) != nullptr);
-				uint32_t text = 0;
-				std::memcpy(&text, whole.data() + 12, sizeof text);
-				if (size >= 28 + text)
-				{
-					const auto chunk = static_cast<uint32_t>(size - 28 - text);
-					std::memcpy(part.data() + 20 + text, &chunk, sizeof chunk);
-					const bool padding = size + 16 > whole.size(); // only padding of the last array is missing
-					REQUIRE((ExactBytes(part).open(opened) != nullptr || padding));
-				}
+				const auto chunk = static_cast<uint32_t>(size - 28 - text);
+				std::memcpy(part.data() + 20 + text, &chunk, sizeof chunk);
+				const bool padding = size + 16 > whole.size(); // only padding of the last array is missing
+				REQUIRE((ExactBytes(part).open(opened) != nullptr || padding));
 			}
-			REQUIRE(opened.polygonCount() <= 12);
 		}
+		REQUIRE(opened.polygonCount() <= 12);
 	}
 }
 
@@ -635,25 +611,21 @@ TEST_CASE("emit: a level that needs no volume has a file of none", "[emit][volum
 	const TemporaryFolder folder;
 	VolumeSet none;
 	none.distance_m = 1.5;
-	for (const VolumeLayout layout : {VolumeLayout::polygons, VolumeLayout::prisms})
-	{
-		for (const bool compress : {false, true})
-		{
-			const std::string file = glbOf(none, {layout, compress});
-			nook_volumes::Volumes opened;
-			const ExactBytes bytes(file);
-			REQUIRE(bytes.open(opened) == nullptr);
-			CHECK(opened.polygonCount() + opened.cornerCount() + opened.clusterCount() == 0);
-			CHECK(opened.header().distance == 1.5);
-			CHECK(opened.hasPrisms() == (layout == VolumeLayout::prisms));
-			CHECK(file.find("\"nodes\"") == std::string::npos); // glTF allows no empty lists
-			CHECK(file.find("\"meshes\"") == std::string::npos);
-			writeFile(folder / "v.glb", file);
-			const VolumeSet read = readVolumes(folder / "v.glb");
-			CHECK(read.occluders.polygons.empty());
-			CHECK(read.distance_m == 1.5);
-		}
-	}
+	const VolumeLayout layout = GENERATE(VolumeLayout::polygons, VolumeLayout::prisms);
+	const bool compress = GENERATE(false, true);
+	const std::string file = glbOf(none, {layout, compress});
+	nook_volumes::Volumes opened;
+	const ExactBytes bytes(file);
+	REQUIRE(bytes.open(opened) == nullptr);
+	CHECK(opened.polygonCount() + opened.cornerCount() + opened.clusterCount() == 0);
+	CHECK(opened.header().distance == 1.5);
+	CHECK(opened.hasPrisms() == (layout == VolumeLayout::prisms));
+	CHECK(file.find("\"nodes\"") == std::string::npos); // glTF allows no empty lists
+	CHECK(file.find("\"meshes\"") == std::string::npos);
+	writeFile(folder / "v.glb", file);
+	const VolumeSet read = readVolumes(folder / "v.glb");
+	CHECK(read.occluders.polygons.empty());
+	CHECK(read.distance_m == 1.5);
 }
 
 TEST_CASE("emit: a level's file and other files are no volumes", "[emit][volume]")

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every test file begins with this: Catch2, what nearly all tests use of the standard library and GLM, and the namespaces.
+// Every test file begins with this: Catch2, what many tests use of the standard library, GLM and core/, and the namespaces.
 #pragma once
 
+#include "temporary_folder.h"
+
 #include "core/error.h"
+#include "core/file.h"
 #include "core/lists.h"
+#include "core/math.h"
+#include "core/random.h"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>

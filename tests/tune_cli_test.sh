@@ -16,7 +16,6 @@ ends()
 	code=$1
 	regex=$2
 	shift 2
-	checks=$((checks + 1))
 	"$nook" "$@" >../stdout 2>../stderr </dev/null
 	found=$?
 	[ "$found" -eq "$code" ] || problem "nook $*: exit code $found, expected $code: $(cat ../stderr)"
@@ -42,7 +41,6 @@ again()
 		compared=$((compared + 1))
 		cmp -s "$file" "$other" || problem "$name: other bytes than $(cat kept_commands)"
 	done
-	checks=$((checks + compared))
 	[ "$compared" -gt 0 ] || problem "$1: found no file but the page"
 	rm -rf kept_again
 }
@@ -51,7 +49,6 @@ again()
 compiles()
 {
 	command -v glslangValidator >/dev/null || return
-	checks=$((checks + 1))
 	file=$1
 	ending=$2
 	shift 2
@@ -83,7 +80,6 @@ drawn()
 	grep -q "data-points=\"$points\"" kept_dom || problem "$1: found other points than $points: $(grep -o '<html[^>]*>' kept_dom)"
 	for text in 'data-ready="yes"' 'data-charts="1"' 'data-overflow="false"' 'Take <em>vo-area' 'Next is \|No other candidate\|The least error has' 'class="mark ours chosen"' \
 		'>pick</td>' '>nook_ao.h</td>' 'nook emit --methods vo-area' 'measuring took' 'not searched'; do
-		checks=$((checks + 1))
 		grep -q -e "$text" kept_dom || problem "$1: found no '$text' in what it draws"
 	done
 }
@@ -131,7 +127,6 @@ if [ -n "$browser" ]; then
 	sed '/<script/,/<\/script>/d' "$folder/dom" >kept_dom
 	quiet kept_bakes/tune.html
 	for text in 'data-ready="yes"' 'data-charts="2"' 'data-overflow="false"' 'Take <em>bake' 'Bytes against error' '>none</td>' 'baked.glb</td>'; do
-		checks=$((checks + 1))
 		grep -q -e "$text" kept_dom || problem "kept_bakes/tune.html: found no '$text' in what it draws"
 	done
 fi
@@ -144,7 +139,6 @@ works 'pick: bake: 0 ms, rmse [0-9.]*, [0-9.]* kB a level' tune builtin:cornell 
 
 # Measurements are reused: the same times, and the same files.
 for run in first second; do
-	checks=$((checks + 1))
 	"$nook" tune builtin:cornell --budget 10s --methods statvo --grid quick $small --cache kept_cache -o kept_$run >../stdout 2>../stderr ||
 		problem "--cache: $(cat ../stderr)"
 done
@@ -183,7 +177,6 @@ if [ -n "$browser" ]; then
 	sed '/<script/,/<\/script>/d' "$folder/dom" >kept_dom
 	quiet kept_nearest/tune.html
 	for text in 'data-ready="yes"' 'Nothing reaches --budget 0.001us' '; the nearest is statvo' '>nearest</td>' '>nook_ao.h</td>'; do
-		checks=$((checks + 1))
 		grep -q -e "$text" kept_dom || problem "kept_nearest/tune.html: found no '$text' in what it draws"
 	done
 fi

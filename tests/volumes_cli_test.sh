@@ -12,7 +12,6 @@ works '^distance: 0[.]5 m' info v.glb
 works '"level": "builtin:cornell"' info v.glb --json -
 # The summary when a file is made agrees with nook info.
 for field in polygons clusters corners bytes quantisation_error_m plane_error_m distance_m ray_distance_m file_triangles; do
-	checks=$((checks + 1))
 	made=$(grep "^	\"$field\":" v.json)
 	found=$("$nook" info v.glb --json - | grep "^	\"$field\":")
 	[ -n "$made" ] && [ "${made%,}" = "${found%,}" ] || problem "$field: found '$found' in the file, expected '$made'"
@@ -30,7 +29,6 @@ field()
 # more NAME THAN BY WHAT: of two numbers, the first is at least BY times the second.
 more()
 {
-	checks=$((checks + 1))
 	awk -v a="$1" -v b="$2" -v by="$3" 'BEGIN { exit !(a >= by * b && b > 0) }' || problem "$4: found $1 against $2, expected $3 times as much"
 }
 
@@ -132,7 +130,6 @@ for size in 0 -1 1TB x 9999999999GiB; do
 done
 fails 4 '.*memory.*expected at most 300 MiB: about [0-9]* MiB without trim, which --degrade leaves out$' volumes builtin:suburb --distance 1 --compensate --trim 0.1 --memory 300MiB -o v.glb
 fails 1 '--degrade: found without --memory, expected both' volumes builtin:cornell --distance 1 --degrade -o v.glb
-checks=$((checks + 1))
 "$nook" volumes builtin:suburb --distance 1 --trim 0.1 --memory 300MiB --degrade -o left.glb --json - >../stdout 2>../stderr ||
 	problem "--degrade: exit code $?, expected the remaining steps to be made"
 grep -q '"left_out": "trim"' ../stdout || problem "--degrade: found no left_out in the statement"
@@ -148,14 +145,12 @@ fails 1 'builtin: found .nothing.' volumes builtin:nothing --distance 1 -o v.glb
 fails 2 'missing.obj' volumes missing.obj --distance 1 -o v.glb
 printf 'v 0 0 0\n' >kept_none.obj
 fails 3 'kept_none.obj' volumes kept_none.obj --distance 1 -o v.glb
-checks=$((checks + 1))
 "$nook" volumes kept.obj --distance 50 --no-drop -o v.glb >/dev/null 2>../stderr || problem "--distance 50: refused"
 grep -q "^nook: warning: kept.obj: distance: found 50 m" ../stderr || problem "--distance 50: found '$(cat ../stderr)', expected a warning"
 
 # A level whose volumes darken nothing gives an empty file and a warning.
 rm -f v.glb
 printf 'v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 4 3 2\n' >kept_plain.obj
-checks=$((checks + 1))
 "$nook" volumes kept_plain.obj --distance 1 --compensate --verify -o v.glb >/dev/null 2>../stderr || problem "a plain: refused: $(cat ../stderr)"
 grep -q '^nook: warning: kept_plain.obj: volumes: found none' ../stderr || problem "a plain: found '$(cat ../stderr)', expected a warning"
 works '^volumes: 0$' info v.glb
@@ -178,7 +173,6 @@ polygons()
 	expected=$1
 	shift
 	works '' volumes kept_parts.obj --distance 1 --extent none --json - "$@"
-	checks=$((checks + 1))
 	[ "$(field polygons)" = "$expected" ] || problem "volumes $*: found $(field polygons) polygons, expected $expected"
 }
 polygons 3

@@ -4,10 +4,8 @@
 
 #include "other_tools.h"
 #include "picture_errors.h"
-#include "temporary_folder.h"
 #include "testing.h"
 
-#include "core/file.h"
 #include "methods/passes.h"
 
 #include <vulkan/vulkan.h>

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: webgpu_test.sh PROGRAM SOURCE FOLDER. nook emit --wgsl: complete shaders of every method and volumes, drawn by Dawn and by
-# Firefox, equal the pictures of nook shade within 1/255; what is refused. WebGPU for Node.js is downloaded from npm's registry once
+# Firefox, equal the pictures of nook shade within 1/255. WebGPU for Node.js is downloaded from npm's registry once
 # into FOLDER. Exit code 77: no npm, registry or Vulkan driver. Without Firefox, Dawn draws alone.
 set -u
 nook=$(realpath "$1")
@@ -103,20 +103,4 @@ scene volumes-prisms "" "--layout prisms"
 scene volumes-within "" "" --eye 0.1,0.3,0.2 --target=-0.2,0.1,-0.4
 scene volumes-device-clip "--depth device" ""
 agree volumes.mjs $volumes
-
-# refuses PATTERN OPTIONS…
-refuses()
-{
-	checks=$((checks + 1))
-	pattern=$1
-	shift
-	"$nook" emit "$@" 2>err
-	found=$?
-	[ $found = 1 ] && grep -q -e "$pattern" err && [ "$(wc -l <err)" = 1 ] || problem "$*: exit code $found, '$(cat err)', expected 1 and '$pattern'"
-}
-refuses 'refused.glsl: found with --wgsl, expected -o FILE.wgsl' --methods slices --wgsl -o refused.glsl
-refuses '--wgsl: missing, expected one for the .wgsl file' --methods slices -o refused.wgsl
-refuses '--glsl: found with --wgsl, expected one language' --methods slices --wgsl --glsl 330 -o refused.wgsl
-refuses '--wgsl: found with --hlsl, expected one language' --methods slices --wgsl --hlsl 60 -o refused.wgsl
-refuses 'aov-mask: found --wgsl, which has no logic operations' --methods aov-mask --wgsl -o refused.wgsl
 finish

@@ -2,14 +2,16 @@
 // Making a level's volumes: without dropping, with all lossless dropping, and with small contributions dropped too; the fragments
 // of each in small pictures of the level's cameras compared with one volume per triangle, and the peak memory (which includes all
 // previous rows: run a row alone for its own peak). NOOK_LEVEL selects a file, NOOK_DISTANCE δ in metres.
-#include "../fill.h"
 #include "core/parallel.h"
 #include "scene/camera_choice.h"
 #include "scene/load.h"
+#include "shade/aov.h"
 #include "volume/build.h"
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include <sys/resource.h>
@@ -29,8 +31,9 @@ nook::VolumeSettings settingsOf(double distance_m, bool drop, double below, bool
 	return settings;
 }
 
-double fragmentsOf(const nook::Tracer& tracer, const nook::VolumeSet& set, const nook::RunSettings& run)
+double fragmentsOf(const nook::Tracer& tracer, nook::VolumeSet set, const nook::RunSettings& run)
 {
+	nook::clusterVolumes(set, {}, run);
 	const nook::Level& level = tracer.level();
 	double fragments = 0.0;
 	double pixels = 0.0;
@@ -38,9 +41,9 @@ double fragmentsOf(const nook::Tracer& tracer, const nook::VolumeSet& set, const
 	{
 		const nook::GBuffer gbuffer =
 			nook::castGBuffer(tracer, nook::viewOf(camera, 32, 18), 32, 18, nook::NormalKind::geometric, run);
-		const nook::fill::FillCount fill = nook::fill::countFill(gbuffer, set, run);
-		fragments += static_cast<double>(fill.fragments);
-		pixels += static_cast<double>(fill.pixels);
+		fragments += static_cast<double>(nook::aovOnGl(gbuffer, set, {}).counts.fragments);
+		pixels += static_cast<double>(
+			std::count_if(gbuffer.depth.begin(), gbuffer.depth.end(), [](const float depth) { return std::isfinite(depth); }));
 	}
 	return pixels > 0.0 ? fragments / pixels : 0.0;
 }

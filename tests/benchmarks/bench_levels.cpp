@@ -2,30 +2,22 @@
 // Time of loading and diagnosing a level as a function of its triangles: a height field as binary PLY. Time per triangle should not
 // grow. NOOK_LARGE adds 10^7 triangles; NOOK_LEVEL selects a file. The peak memory includes the reader process and, from the second
 // size on, previous sizes: run one size alone for its own peak.
-#include "core/file.h"
+#include "../level_files.h"
+
 #include "core/parallel.h"
-#include "scene/load.h"
 
 #include <benchmark/benchmark.h>
 
-#include <array>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
-#include <string>
 
 #include <sys/resource.h>
 
 namespace
 {
 
-template <class T> void append(std::string& bytes, T value)
-{
-	std::array<char, sizeof(T)> raw{};
-	std::memcpy(raw.data(), &value, sizeof value);
-	bytes.append(raw.data(), raw.size());
-}
+using nook::append;
 
 // A square grid with waves, with at least `triangles` triangles.
 std::string heightFieldPly(std::size_t triangles)

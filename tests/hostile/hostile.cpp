@@ -15,12 +15,13 @@
 #include "core/file.h"
 #include "methods/recipes.h"
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <iostream>
-#include <optional>
 #include <sstream>
 
 #include <arpa/inet.h>
@@ -548,46 +549,9 @@ bool test(const Settings& settings)
 	return compareCodes(settings, cases, results) && good;
 }
 
-std::optional<Settings> settingsOf(const std::vector<std::string>& arguments)
+std::string absolute(const std::string& path)
 {
-	Settings settings;
-	std::vector<std::string> names;
-	for (std::size_t i = 0; i < arguments.size(); ++i)
-	{
-		const std::string& argument = arguments[i];
-		const bool has_value = i + 1 < arguments.size();
-		if (argument == "--record" || argument == "--all")
-		{
-			(argument == "--all" ? settings.all : settings.record) = true;
-		}
-		else if (argument == "--slow" && has_value)
-		{
-			settings.slow = std::stod(arguments[++i]);
-		}
-		else if (argument == "--only" && has_value)
-		{
-			settings.only = arguments[++i];
-		}
-		else if (argument == "--share" && has_value)
-		{
-			settings.share = std::max(1UL, std::stoul(arguments[++i]));
-		}
-		else if (argument == "--write" && has_value)
-		{
-			settings.write = std::filesystem::absolute(arguments[++i]).string();
-		}
-		else
-		{
-			names.push_back(std::filesystem::absolute(argument).string());
-		}
-	}
-	if (names.size() != 2)
-	{
-		return std::nullopt;
-	}
-	settings.nook = names[0];
-	settings.codes = names[1];
-	return settings;
+	return std::filesystem::absolute(path).string();
 }
 
 // How much slower than a second per GB this machine allocates memory: 1 on most, 4 on some virtual machines.
@@ -614,18 +578,22 @@ double memorySlowness()
 
 int main(int argc, char** argv)
 {
-	auto settings = nook::hostile::settingsOf({argv + 1, argv + argc});
-	if (!settings)
-	{
-		std::cerr
-			<< "usage: nook_hostile NOOK CODES [--all] [--share N] [--slow FACTOR] [--record] [--only GROUP] [--write FOLDER]\n";
-		return 1;
-	}
+	nook::hostile::Settings settings;
+	CLI::App app;
+	app.add_option("NOOK", settings.nook)->required()->transform(nook::hostile::absolute);
+	app.add_option("CODES", settings.codes)->required()->transform(nook::hostile::absolute);
+	app.add_flag("--record", settings.record);
+	app.add_flag("--all", settings.all);
+	app.add_option("--share", settings.share)->check(CLI::PositiveNumber);
+	app.add_option("--slow", settings.slow);
+	app.add_option("--only", settings.only);
+	app.add_option("--write", settings.write)->transform(nook::hostile::absolute);
+	CLI11_PARSE(app, argc, argv);
 	const double memory = nook::hostile::memorySlowness();
 	if (memory > 1.0)
 	{
 		std::printf("memory comes %.1f times slower than a second a GB here: so much longer may a file take\n", memory);
-		settings->slow *= memory;
+		settings.slow *= memory;
 	}
-	return nook::hostile::test(*settings) ? 0 : 1;
+	return nook::hostile::test(settings) ? 0 : 1;
 }

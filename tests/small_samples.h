@@ -31,13 +31,13 @@ inline ShadeSettings settingsFor(ShadeMethod method, double radius_m = 0.5)
 	return settings;
 }
 
-// Of a method without a pattern.
+// For a method without a pattern.
 inline std::vector<float> visibilityOf(const GBuffer& gbuffer, const ShadeSettings& settings)
 {
 	return visibilityOf(gbuffer, ownSamples(settings), settings);
 }
 
-// To evaluate single pixels; samples are left to the caller.
+// Kernels that evaluate single pixels; the caller passes samples.
 inline shade_kernels::Kernels kernelsOver(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
 {
 	shade_kernels::Kernels kernels;

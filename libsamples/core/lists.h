@@ -66,7 +66,7 @@ template <class List, class Wanted> auto firstWhere(List&& list, const Wanted& i
 	return found != std::end(list) ? &*found : nullptr;
 }
 
-// As many numbers, each one more than the one before it.
+// `count` numbers, each one more than the one before it.
 template <class Number> std::vector<Number> countingFrom(Number first, std::size_t count)
 {
 	std::vector<Number> numbers(count);

@@ -257,7 +257,7 @@ void addPoints(Json& series, std::span<const NoiseRow> rows)
 	}
 }
 
-// Of rows that have all but the count in common.
+// The rows have all but the count in common.
 Json seriesJson(std::span<const NoiseRow> rows, bool with_points)
 {
 	const Method method = rows.front().recipe.method;

@@ -554,7 +554,9 @@ Advice adviceFor(const LevelFacts& facts, const AssetEstimate& masks)
 	const bool split = facts.coarse_share >= 0.25;
 	if (masks.bytes > kMuch_bytes)
 	{
-		return {true, "volumes of so many polygons take minutes a picture and tens of megabytes", split};
+		return {true,
+				"volumes of so many polygons take minutes a picture and tens of megabytes unless --detail auto simplifies them",
+				split};
 	}
 	if (static_cast<double>(facts.patches) > kSmoothMesh * static_cast<double>(facts.places + facts.sharing))
 	{

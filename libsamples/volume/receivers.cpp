@@ -297,6 +297,15 @@ std::vector<Bounds> standingEyes(const Tracer& tracer, const RunSettings& run)
 	return eyes.size() < 3 ? std::vector<Bounds>{} : eyes;
 }
 
+// A piece of surface that is connected by vertices.
+struct SurfacePiece
+{
+	std::size_t triangles = 0;
+	double area = 0.0;
+	double needed = 0.0;          // of the area: parts whose backs are seen or see a receiver
+	std::array<double, 2> rays{}; // from standingEyes() that hit its fronts and backs
+};
+
 // A 16 : 9 grid of at least `count` points.
 struct Grid
 {
@@ -540,6 +549,8 @@ std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::spa
 {
 	constexpr double kNeeded = 0.005; // of a piece's area, or of the rays that hit it
 	constexpr std::size_t kLooks = 400'000;
+	constexpr double kLarge = 4.0; // times the mean area
+	constexpr std::size_t kSample = 4096;
 	constexpr double kFewest = 100.0; // rays that tell which sides of a piece people see
 	const Level& level = tracer.level();
 	const std::size_t count = level.triangles.size();
@@ -553,46 +564,52 @@ std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::spa
 		pieces.join(first[t.x], first[t.y]);
 		pieces.join(first[t.x], first[t.z]);
 	}
-	const auto pieceOf = [&](std::size_t i)
+	const std::vector<uint32_t> piece_of = mapped(level.triangles, [&](const glm::uvec3& t) { return pieces.rootOf(first[t.x]); });
+	std::vector<SurfacePiece> found(level.positions.size());
+	for (std::size_t i = 0; i < count; ++i)
 	{
-		return pieces.rootOf(first[level.triangles[i].x]);
-	};
-	std::vector<glm::uvec2> met(level.positions.size(), glm::uvec2(0)); // by piece: rays that hit fronts and backs
+		found[piece_of[i]].triangles += 1;
+		found[piece_of[i]].area += glm::length(acrossOf(cornersOf(level, i)));
+	}
 	const std::vector<Bounds> eyes = boxes.empty() ? standingEyes(tracer, run) : std::vector<Bounds>{};
 	for (const uint64_t side : lookAround(tracer, eyes, eyes.empty() ? 0 : kLooks, 4, run.threads))
 	{
 		if (side != UINT64_MAX)
 		{
-			met[pieceOf(side / 2)][static_cast<int>(side % 2)] += 1;
+			found[piece_of[side / 2]].rays[side % 2] += 1.0;
 		}
 	}
 	for (std::size_t i = 0; i < count; ++i)
 	{
-		const glm::dvec2 rays(met[pieceOf(i)]);
-		sides.seen[i] &= rays.x >= kFewest && rays.y <= kNeeded * rays.x ? kFrontSeen : kFrontSeen | kBackSeen;
+		const SurfacePiece& piece = found[piece_of[i]];
+		const bool hidden = piece.rays[0] >= kFewest && piece.rays[1] <= kNeeded * piece.rays[0];
+		sides.seen[i] &= hidden ? kFrontSeen : kFrontSeen | kBackSeen;
 	}
-	std::vector<double> areas(count);
 	std::vector<double> needed(count, 0.0);
 	inBlocks(count, 256, run, "backs",
 			 [&](std::size_t i)
 			 {
+				 const SurfacePiece& piece = found[piece_of[i]];
 				 const std::array<glm::dvec3, 3> corners = cornersOf(level, i);
 				 const glm::dvec3 across = acrossOf(corners);
-				 areas[i] = glm::length(across);
-				 const bool used = sides.there[i] != 0 && ((sides.seen[i] & kBackSeen) != 0 ||
-														   seesReceiver(tracer, sides, corners, -across / areas[i], distance_m,
-																		distance_m, static_cast<uint32_t>(i)));
-				 needed[i] = used ? areas[i] : 0.0;
+				 const double area = glm::length(across);
+				 const bool seen = (sides.seen[i] & kBackSeen) != 0;
+				 // Of a large piece, its large triangles and a sample of the others.
+				 const bool large = area * static_cast<double>(piece.triangles) > kLarge * piece.area;
+				 const std::size_t every = seen || large ? 1 : std::max<std::size_t>(1, piece.triangles / kSample);
+				 const bool used = sides.there[i] != 0 && i % every == 0 &&
+								   (seen || seesReceiver(tracer, sides, corners, -across / area, distance_m, distance_m,
+														 static_cast<uint32_t>(i)));
+				 needed[i] = used ? area * static_cast<double>(every) : 0.0;
 			 });
-	std::vector<glm::dvec2> sums(level.positions.size(), glm::dvec2(0.0)); // by piece: the area, and what is needed of it
 	for (std::size_t i = 0; i < count; ++i)
 	{
-		sums[pieceOf(i)] += glm::dvec2(areas[i], needed[i]);
+		found[piece_of[i]].needed += needed[i];
 	}
 	const auto isIdle = [&](std::size_t i)
 	{
-		const glm::dvec2 sum = sums[pieceOf(i)];
-		return level.material_list[level.materials[i]].alpha_mode == AlphaMode::opaque && sum.y <= kNeeded * sum.x;
+		const SurfacePiece& piece = found[piece_of[i]];
+		return level.material_list[level.materials[i]].alpha_mode == AlphaMode::opaque && piece.needed <= kNeeded * piece.area;
 	};
 	return listOf(count, [&](std::size_t i) { return static_cast<uint8_t>(isIdle(i) ? 1 : 0); });
 }

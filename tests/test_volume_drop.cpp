@@ -53,6 +53,19 @@ TEST_CASE("drop: a convex body alone needs no volume", "[volume_drop]")
 	CHECK(dropped(of_sphere.counts) == sphere.triangles.size());
 }
 
+TEST_CASE("drop: the inside of a dense mesh is inside unless it has a window", "[volume_drop]")
+{
+	Level ball = emptyLevel();
+	addSphere(ball, {0.0, 0.0, 0.0}, 1.0, 200, 400);
+	ball.cameras.emplace_back().world_from_camera[3] = {5.0, 0.0, 0.0, 1.0};
+	SideSettings both;
+	both.backs = true;
+	CHECK(receiverSides(Tracer(ball, {2, {}}), both, {2, {}}).inside_sides == ball.triangles.size());
+	std::erase_if(ball.triangles, [&](const glm::uvec3& t) { return ball.positions[t.x].y > 0.95; });
+	ball.materials.resize(ball.triangles.size());
+	CHECK(5 * receiverSides(Tracer(ball, {2, {}}), both, {2, {}}).inside_sides < 3 * ball.triangles.size());
+}
+
 TEST_CASE("drop: a box over a floor loses its top, and nothing else changes", "[volume_drop]")
 {
 	const Level level = floorAndBox();

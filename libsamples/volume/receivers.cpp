@@ -184,24 +184,62 @@ void leaveOutOfSight(const Tracer& tracer, const SideSettings& settings, Receive
 	}
 }
 
+// Leaves out sides from which every ray hits a back first. Of a small triangle a quarter of the rays will do if the sides around it
+// are inside, too, as in a dense closed mesh.
 void leaveOutInside(const Tracer& tracer, ReceiverSides& sides, const RunSettings& run)
 {
+	constexpr uint32_t kAround = 9; // triangles at the three corners, itself three times
 	const Level& level = tracer.level();
 	const Bounds& bounds = tracer.bounds();
 	const double step_m = 0.005 * glm::length(bounds.most - bounds.least);
+	const auto insideOf = [&](std::size_t i, unsigned asked, bool fully)
+	{
+		const std::array<glm::dvec3, 3> corners = cornersOf(level, i);
+		unsigned inside = 0;
+		for (unsigned side = 0; side < 2; ++side)
+		{
+			const glm::dvec3 normal = normalOf(corners, side == 0);
+			const auto turn = static_cast<uint32_t>(2 * i + side);
+			const auto isOut = [&]
+			{
+				return fully ? isOpen(tracer, sides.materials, corners, normal, step_m, turn)
+							 : isOpen(tracer, sides.materials, (corners[0] + corners[1] + corners[2]) / 3.0, normal, turn);
+			};
+			const unsigned bit = 1U << side;
+			inside |= (asked & bit) != 0 && !isOut() ? bit : 0U;
+		}
+		return static_cast<uint8_t>(inside);
+	};
+	const auto isLarge = [&](std::size_t i)
+	{
+		return glm::length(acrossOf(cornersOf(level, i))) > 8.0 * step_m * step_m;
+	};
 	std::vector<uint8_t> inside(level.triangles.size(), 0);
+	inBlocks(inside.size(), 1024, run, "insides",
+			 [&](std::size_t i) { inside[i] = sides.there[i] != 0 ? insideOf(i, sides.seen[i], isLarge(i)) : uint8_t{0}; });
+	const std::vector<uint32_t> first = weldPositions(level.positions, run.threads);
+	std::vector<uint32_t> count_at(first.size(), 0); // by place
+	std::vector<uint8_t> inside_at(first.size(), kFrontSeen | kBackSeen);
+	for (std::size_t i = 0; i < inside.size(); ++i)
+	{
+		for (int corner = 0; corner < 3; ++corner)
+		{
+			const uint32_t place = first[level.triangles[i][corner]];
+			count_at[place] += 1;
+			inside_at[place] &= inside[i];
+		}
+	}
 	inBlocks(inside.size(), 1024, run, "insides",
 			 [&](std::size_t i)
 			 {
-				 const std::array<glm::dvec3, 3> corners = cornersOf(level, i);
-				 for (unsigned side = 0; side < 2 && sides.there[i] != 0; ++side)
+				 const glm::uvec3& t = level.triangles[i];
+				 const std::array<uint32_t, 3> places{first[t.x], first[t.y], first[t.z]};
+				 const bool few = count_at[places[0]] + count_at[places[1]] + count_at[places[2]] < kAround;
+				 const unsigned around = few ? 0U : inside_at[places[0]] & inside_at[places[1]] & inside_at[places[2]];
+				 const unsigned doubtful = inside[i] & ~around;
+				 if (doubtful != 0 && !isLarge(i))
 				 {
-					 const auto turn = static_cast<uint32_t>(2 * i + side);
-					 const bool asked = (sides.seen[i] & (1U << side)) != 0;
-					 if (asked && !isOpen(tracer, sides.materials, corners, normalOf(corners, side == 0), step_m, turn))
-					 {
-						 inside[i] |= static_cast<uint8_t>(1U << side);
-					 }
+					 inside[i] = static_cast<uint8_t>((inside[i] & around) | insideOf(i, doubtful, true));
 				 }
 			 });
 	for (std::size_t i = 0; i < inside.size(); ++i)

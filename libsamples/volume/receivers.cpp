@@ -632,7 +632,7 @@ std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::spa
 				 const glm::dvec3 across = acrossOf(corners);
 				 const double area = glm::length(across);
 				 const bool seen = (sides.seen[i] & kBackSeen) != 0;
-				 // Of a large piece, its large triangles and a sample of the others.
+				 // A large piece is judged by its large triangles and a sample of the others.
 				 const bool large = area * static_cast<double>(piece.triangles) > kLarge * piece.area;
 				 const std::size_t every = seen || large ? 1 : std::max<std::size_t>(1, piece.triangles / kSample);
 				 const bool used = sides.there[i] != 0 && i % every == 0 &&

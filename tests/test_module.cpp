@@ -64,7 +64,7 @@ struct EngineCamera
 	double up;      // the projection's second diagonal entry; the first is 1/2
 	double z;       // its third
 	double w;       // below that
-	double z_start; // beside it
+	double z_start; // third row, fourth column
 	bool rows;      // memory holds rows of a matrix for column vectors
 	bool left_handed;
 	bool zero_to_one;

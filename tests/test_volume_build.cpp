@@ -423,6 +423,9 @@ TEST_CASE("build: a ground with two sides is simplified if people see only its f
 	VolumeSettings settings;
 	settings.occluders.detail = 0.02;
 	CHECK(2 * buildVolumes(ground, settings, {2, {}}).merged.proxies < ground.triangles.size());
+	Level seen = ground;
+	seen.cameras.emplace_back().world_from_camera[3] = {0.0, -4.0, 0.0, 1.0};
+	CHECK(buildVolumes(seen, settings, {2, {}}).merged.proxies == ground.triangles.size());
 	settings.drop.visible_from = {Bounds{{-9.0, -4.0, -9.0}, {9.0, -3.0, 9.0}}};
 	CHECK(buildVolumes(ground, settings, {2, {}}).merged.proxies == ground.triangles.size());
 }

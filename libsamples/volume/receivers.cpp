@@ -314,7 +314,8 @@ std::vector<LevelCamera> chosenCameras(const Tracer& tracer, const RunSettings& 
 	}
 }
 
-// Places where a person can stand and mostly sees fronts; none if there are fewer than three.
+// Places where a person can stand and mostly sees fronts, and the level's own cameras; none if fewer than three of the former are
+// found.
 std::vector<Bounds> standingEyes(const Tracer& tracer, const RunSettings& run)
 {
 	std::vector<Bounds> eyes;
@@ -332,7 +333,16 @@ std::vector<Bounds> standingEyes(const Tracer& tracer, const RunSettings& run)
 			eyes.push_back({eye, eye});
 		}
 	}
-	return eyes.size() < 3 ? std::vector<Bounds>{} : eyes;
+	if (eyes.size() < 3)
+	{
+		return {};
+	}
+	for (const LevelCamera& camera : tracer.level().cameras)
+	{
+		const glm::dvec3 eye(camera.world_from_camera[3]);
+		eyes.push_back({eye, eye});
+	}
+	return eyes;
 }
 
 // A piece of surface that is connected by vertices.

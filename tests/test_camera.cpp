@@ -275,6 +275,26 @@ TEST_CASE("camera: where those who stand see too little, views are from outside"
 	Level wire = test::emptyLevel();
 	test::addBox(wire, {0.0, 0.0, 0.0}, {0.001, 40.0, 0.001});
 	viewsOf(wire, 6, 1);
+	// A hollow, two-sided pyramid with boxes around it, and one with boxes inside that are turned round: a room with wrong faces.
+	for (const bool room : {false, true})
+	{
+		Level pyramid = test::emptyLevel();
+		pyramid.material_list[0].two_sided = true;
+		const std::array<glm::dvec3, 4> corners{glm::dvec3{-8, 0, 8}, {8, 0, 8}, {8, 0, -8}, {-8, 0, -8}};
+		test::addQuad(pyramid, corners[0], {0, 0, -16}, {16, 0, 0}); // faces down
+		for (std::size_t i = 0; i < 4; ++i)
+		{
+			test::addTriangle(pyramid, test::addVertex(pyramid, corners[i]), test::addVertex(pyramid, corners[(i + 1) % 4]),
+							  test::addVertex(pyramid, {0, 9, 0}));
+		}
+		for (const glm::dvec3 corner : corners)
+		{
+			const glm::dvec3 middle = (room ? 0.6 : 0.8) * corner + glm::dvec3(0, room ? 1.0 : 6.0, 0);
+			const glm::dvec3 half(1.0, room ? -1.0 : 3.0, 1.0); // a negative size turns all faces round
+			test::addBox(pyramid, middle - half, middle + half);
+		}
+		viewsOf(pyramid, room ? 0 : 6, 10);
+	}
 
 	Level glass = floorOf(4.0);
 	glass.material_list[0].alpha_mode = AlphaMode::mask;

@@ -4,8 +4,8 @@
 //
 // Candidates. In levels: above floors, found by rays from above through all storeys, with ground around and head room; at standing
 // height, and about three times as high. Around objects (nothing to stand on, or less than 2 m in total), and if standing views
-// show too little: from outside, on a sphere, at a distance that shows the whole object, and closer. Last, close to the largest
-// triangles.
+// show too little, or mostly the backs of a hollow object: from outside, on a sphere, at a distance that shows the whole object, and
+// closer. Last, close to the largest triangles.
 //
 // Score of a picture of 32 × 18 rays, 60° high:
 //     place × seen × clear × facing × varied × (0.25 depths + 0.20 normals + 0.30 edges + 0.25 creases)
@@ -329,6 +329,8 @@ constexpr double kLeastScore = 1e-12; // below any varied view; also the score o
 struct Sight
 {
 	double score = 0.0;
+	double unfaced = 0.0; // score without the factor `facing`
+	bool mostly_backs = false;
 	std::vector<uint64_t> cells; // that it shows, sorted, without duplicates
 };
 
@@ -516,7 +518,9 @@ Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candi
 							0.25 * std::min(1.0, edges.y / 0.15);
 	const double plane = largestPlane(site, candidate, samples);
 	const double varied = std::clamp(1.0 - 0.8 * (plane - 1.0 / 3.0) / (0.75 - 1.0 / 3.0), 0.2, 1.0);
-	sight.score = candidate.worth * seen * clear * clear * clear * facing * varied * interest;
+	sight.unfaced = candidate.worth * seen * clear * clear * clear * varied * interest;
+	sight.score = facing * sight.unfaced;
+	sight.mostly_backs = 2 * backs > opaque;
 	if (candidate.outside)
 	{
 		sight.score = std::max(sight.score, kLeastScore * seen);
@@ -616,6 +620,23 @@ Verdict verdictOf(const Tracer& tracer, glm::dvec3 from, glm::dvec3 way, double 
 	return verdict;
 }
 
+double bestUnfaced(std::span<const Sight> sights)
+{
+	double best = 0.0;
+	for (const Sight& sight : sights)
+	{
+		best = std::max(best, sight.unfaced);
+	}
+	return best;
+}
+
+// Whether most views from floors show backs, as inside a hollow object with two-sided materials.
+bool areInsideHollow(std::span<const Sight> standing)
+{
+	const auto backs = std::count_if(standing.begin(), standing.end(), [](const Sight& sight) { return sight.mostly_backs; });
+	return 4 * static_cast<std::size_t>(backs) > 3 * standing.size();
+}
+
 // Fewer views are the first of more.
 std::vector<LevelCamera> bestCameras(const Tracer& tracer, int count, const RunSettings& run)
 {
@@ -623,17 +644,8 @@ std::vector<LevelCamera> bestCameras(const Tracer& tracer, int count, const RunS
 	std::vector<CameraCandidate> candidates;
 	std::vector<Sight> sights;
 	std::vector<std::size_t> chosen;
-	for (const auto& candidatesOf : {standingViews, viewsFromOutside, closeViews}) // if the previous ones show too little
+	const auto addJudged = [&](const std::vector<CameraCandidate>& more)
 	{
-		if (chosen.size() >= static_cast<std::size_t>(count))
-		{
-			break;
-		}
-		const std::vector<CameraCandidate> more = candidatesOf(tracer, site);
-		if (more.empty())
-		{
-			continue;
-		}
 		const std::size_t first = candidates.size();
 		candidates.insert(candidates.end(), more.begin(), more.end());
 		sights.resize(candidates.size());
@@ -644,7 +656,33 @@ std::vector<LevelCamera> bestCameras(const Tracer& tracer, int count, const RunS
 						sights[first + i] = judge(tracer, site, more[i]);
 						progress.finishOne();
 					});
-		pick(site, candidates, sights, count, chosen);
+	};
+	addJudged(standingViews(tracer, site));
+	if (areInsideHollow(sights))
+	{
+		// A room whose faces are all turned round also shows its backs, but little from outside.
+		const std::size_t standing = candidates.size();
+		addJudged(viewsFromOutside(tracer, site));
+		const auto outside = sights.begin() + static_cast<std::ptrdiff_t>(standing);
+		if (bestUnfaced({outside, sights.end()}) > 0.5 * bestUnfaced({sights.begin(), outside}))
+		{
+			candidates.erase(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(standing));
+			sights.erase(sights.begin(), outside);
+		}
+		else
+		{
+			candidates.resize(standing);
+			sights.resize(standing);
+		}
+	}
+	pick(site, candidates, sights, count, chosen);
+	for (const auto& candidatesOf : {viewsFromOutside, closeViews}) // if the previous ones show too little
+	{
+		if (chosen.size() < static_cast<std::size_t>(count))
+		{
+			addJudged(candidatesOf(tracer, site));
+			pick(site, candidates, sights, count, chosen);
+		}
 	}
 	std::vector<LevelCamera> cameras;
 	for (const std::size_t i : chosen)

@@ -46,7 +46,7 @@ void visit(Archive& archive, OccluderCounts& counts)
 {
 	archive(counts.triangles, counts.proxies, counts.polygons, counts.two_sided, counts.corners, counts.regions, counts.with_holes,
 			counts.fallbacks, counts.duplicates, counts.reversed, counts.thin, counts.uncut, counts.clear, counts.components,
-			counts.closed, counts.sealed, counts.extent_m, counts.deviation_m);
+			counts.closed, counts.extent_m, counts.deviation_m);
 }
 
 void visit(Archive& archive, TrimCounts& counts)

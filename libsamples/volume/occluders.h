@@ -18,8 +18,7 @@ class Tracer;
 
 enum class Sides
 {
-	automatic, // opaque surfaces that are consistently wound and closed (up to small holes), with fronts outside, are oriented; all
-			   // others are two-sided
+	automatic, // opaque surfaces that are consistently wound and closed, with fronts outside, are oriented; others are two-sided
 	oriented,  // every polygon darkens only what lies in front of it
 	two_sided,
 };
@@ -64,7 +63,6 @@ struct OccluderCounts
 	uint64_t clear = 0;       // polygons dropped: fully transparent masks
 	uint64_t components = 0;  // pieces of surface connected by edges
 	uint64_t closed = 0;      // closed components: every edge has as many triangles in each direction, or only slits are open
-	uint64_t sealed = 0;      // other components whose holes have at most a hundredth of their area
 	double extent_m = 0.0;    // length that merged polygons were cut to; infinite: none was cut; 0: not requested
 	double deviation_m = 0.0; // upper bound of how far simplification moved the surface
 };

@@ -200,10 +200,7 @@ std::size_t solidIn(const Mask& mask, const Material& material, glm::dvec2 a, gl
 
 constexpr std::size_t kSurfaceBlock = std::size_t{1} << 14U;
 constexpr std::size_t kMostAtEdge = 64; // triangles; edges with more are skipped because pairs are compared
-// Maximum hole area relative to a piece's area (slits have none, holes.h): a scanned figure stays below it, a vase's mouth is
-// above.
-constexpr double kHoles = 0.01;
-constexpr double kUvTolerance = 1e-4; // tolerance for equal texture mappings: a tenth of a texel of a 1024 texture
+constexpr double kUvTolerance = 1e-4;   // tolerance for equal texture mappings: a tenth of a texel of a 1024 texture
 
 double greatest(glm::dvec3 v)
 {
@@ -430,10 +427,9 @@ struct PieceSums
 {
 	Groups groups;               // triangles connected by edges
 	std::vector<double> volumes; // six times the volume, by the component's first triangle; > 0: fronts are outside
-	std::vector<double> areas;   // twice the area
 	std::vector<double> holes;   // twice the greatest area that open edges can bound; 0: closed, except for slits
 
-	explicit PieceSums(std::size_t count) : groups(count), volumes(count, 0.0), areas(count, 0.0), holes(count, 0.0) {}
+	explicit PieceSums(std::size_t count) : groups(count), volumes(count, 0.0), holes(count, 0.0) {}
 };
 
 void joinPieces(const Soup& soup, const Finder& finder, const Surface& surface, PieceSums& pieces)
@@ -452,7 +448,6 @@ void joinPieces(const Soup& soup, const Finder& finder, const Surface& surface, 
 		const glm::dvec3 origin = positions[surface.triangles[piece].x];
 		const glm::dvec3 area = areaOf(positions, surface.triangles[i]);
 		pieces.volumes[piece] += glm::dot(positions[surface.triangles[i].x] - origin, area);
-		pieces.areas[piece] += glm::length(area);
 	}
 }
 
@@ -487,8 +482,8 @@ std::vector<uint8_t> knownOriented(const Soup& soup, const OccluderSettings& set
 	return soup.sources.empty() ? of_level : mapped(soup.sources, [&](uint32_t source) { return of_level[source]; });
 }
 
-// A piece of surface is oriented if it is opaque, closed except for small holes, and its fronts are outside. If they are inside, it
-// is a room, is inside out, or is the wall of a hollow: its backs may be seen.
+// A piece of surface is oriented if it is opaque, closed, and its fronts are outside. If they are inside, it is a room, is inside
+// out, or is the wall of a hollow: its backs may be seen, as through any hole.
 void findSides(const Soup& soup, const OccluderSettings& settings, const Finder& finder, Surface& surface, OccluderCounts& counts)
 {
 	const std::size_t count = surface.triangles.size();
@@ -500,15 +495,13 @@ void findSides(const Soup& soup, const OccluderSettings& settings, const Finder&
 	{
 		const uint32_t piece = pieces.groups.rootOf(static_cast<uint32_t>(i));
 		const bool closed = pieces.holes[piece] == 0.0;
-		const bool sealed = pieces.holes[piece] <= kHoles * pieces.areas[piece];
 		if (piece == i)
 		{
 			counts.components += 1;
 			counts.closed += closed ? 1U : 0U;
-			counts.sealed += sealed && !closed ? 1U : 0U;
 		}
 		const bool oriented = settings.sides == Sides::oriented || (settings.sides == Sides::automatic && kindOf(soup, i) == 0 &&
-																	((sealed && pieces.volumes[piece] > 0.0) || known[i] != 0));
+																	((closed && pieces.volumes[piece] > 0.0) || known[i] != 0));
 		surface.two_sided[i] |= oriented ? uint8_t{0} : uint8_t{1};
 	}
 }

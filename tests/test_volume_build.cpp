@@ -430,6 +430,23 @@ TEST_CASE("build: a ground with two sides is simplified if people see only its f
 	CHECK(buildVolumes(ground, settings, {2, {}}).merged.proxies == ground.triangles.size());
 }
 
+TEST_CASE("build: a closed hollow that a camera looks into darkens inside", "[volume_build]")
+{
+	Level room = emptyLevel();
+	room.material_list[0].two_sided = true;
+	addBox(room, {0.0, 0.0, 0.0}, {4.0, 3.0, 4.0}); // fronts outside
+	room.cameras.emplace_back().world_from_camera[3] = {2.0, 1.5, 9.0, 1.0};
+	VolumeSettings settings;
+	CHECK(buildVolumes(room, settings, {2, {}}).set.occluders.polygons.empty());
+	settings.drop.visible_from = {Bounds{{1.0, 1.0, 1.0}, {3.0, 2.0, 3.0}}};
+	CHECK(buildVolumes(room, settings, {2, {}}).set.occluders.polygons.size() == 6);
+	settings.drop.visible_from.clear();
+	room.cameras[0].world_from_camera[3] = {2.0, 1.5, 2.0, 1.0};
+	CHECK(buildVolumes(room, settings, {2, {}}).set.occluders.polygons.size() == 6);
+	settings.occluders.sides = Sides::oriented;
+	CHECK(buildVolumes(room, settings, {2, {}}).set.occluders.polygons.empty());
+}
+
 TEST_CASE("build: folds that simplification makes do not blacken what is in the open", "[volume_build]")
 {
 	constexpr uint32_t kSide = 200;

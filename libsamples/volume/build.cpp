@@ -256,7 +256,14 @@ std::vector<uint8_t> findOccluders(BuiltVolumes& built, const Level& level, cons
 			checkMemory(level, settings, pieces, "polygons that an extent cuts to", built);
 		}
 	};
-	if (simplifies(settings) && settings.occluding == nullptr) // the tracer numbers the triangles of the whole level
+	const bool whole = tracer != nullptr && settings.occluding == nullptr; // the tracer numbers the triangles of the whole level
+	if (whole && occluding.sides == Sides::automatic)
+	{
+		runOnce(
+			"looks", [&] { occluding.seen_backs = seenBacks(*tracer, settings.drop.visible_from, withoutUnits(run)); },
+			[&](Archive& archive) { archive(occluding.seen_backs); }, run);
+	}
+	if (simplifies(settings) && whole)
 	{
 		occluding.tracer = tracer;
 		runOnce(

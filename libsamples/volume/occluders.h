@@ -18,7 +18,8 @@ class Tracer;
 
 enum class Sides
 {
-	automatic, // opaque surfaces that are consistently wound and closed, with fronts outside, are oriented; others are two-sided
+	automatic, // opaque surfaces that are consistently wound and closed, with fronts outside, are oriented, unless seen from
+			   // inside; others are two-sided
 	oriented,  // every polygon darkens only what lies in front of it
 	two_sided,
 };
@@ -39,10 +40,12 @@ struct OccluderSettings
 						  // those with two sides that count: in front of them, proxies would have them as receivers
 	int gap_halvings = 0; // polygons with alpha masks are halved along their longer axis (squares along both) up to this often to
 						  // separate leaves from gaps, whose mean coverage would let light through everywhere alike
-	const Tracer* tracer = nullptr;   // of the level, with `detail`: leaves out folds and steps that only simplification made
-	std::vector<uint8_t> one_sided{}; // with `detail` and Sides::automatic, per level triangle: not 0 if backs are idle
-									  // (idleBacks), so that it is oriented although not closed; 0: it is not simplified; empty:
-									  // closed surfaces are
+	const Tracer* tracer = nullptr;    // of the level, with `detail`: leaves out folds and steps that only simplification made
+	std::vector<uint8_t> one_sided{};  // with `detail` and Sides::automatic, per level triangle: not 0 if backs are idle
+									   // (idleBacks), so that it is oriented although not closed; 0: it is not simplified; empty:
+									   // closed surfaces are
+	std::vector<uint8_t> seen_backs{}; // with Sides::automatic, per level triangle: not 0 if it is two-sided although closed, since
+									   // cameras look into it (seenBacks); empty: none
 	std::function<void(uint64_t)> before_cutting{}; // called with an upper bound of the polygons after cutting; may throw
 };
 

@@ -345,14 +345,63 @@ std::vector<Bounds> standingEyes(const Tracer& tracer, const RunSettings& run)
 	return eyes;
 }
 
+constexpr double kNeeded = 0.005; // of a piece's area, or of the rays that hit it
+
 // A piece of surface that is connected by vertices.
 struct SurfacePiece
 {
 	std::size_t triangles = 0;
 	double area = 0.0;
 	double needed = 0.0;          // of the area: parts whose backs are seen or see a receiver
-	std::array<double, 2> rays{}; // from standingEyes() that hit its fronts and backs
+	std::array<double, 2> rays{}; // that hit its fronts and backs
 };
+
+struct SurfacePieces
+{
+	std::vector<uint32_t> of; // per triangle
+	std::vector<SurfacePiece> pieces;
+};
+
+// `met`: sides that rays hit, from lookAround().
+SurfacePieces surfacePieces(const Level& level, std::span<const uint64_t> met, const RunSettings& run)
+{
+	const std::vector<uint32_t> first = weldPositions(level.positions, run.threads);
+	Groups groups(level.positions.size());
+	for (const glm::uvec3& t : level.triangles)
+	{
+		groups.join(first[t.x], first[t.y]);
+		groups.join(first[t.x], first[t.z]);
+	}
+	SurfacePieces found{mapped(level.triangles, [&](const glm::uvec3& t) { return groups.rootOf(first[t.x]); }),
+						std::vector<SurfacePiece>(level.positions.size())};
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
+	{
+		found.pieces[found.of[i]].triangles += 1;
+		found.pieces[found.of[i]].area += glm::length(acrossOf(cornersOf(level, i)));
+	}
+	for (const uint64_t side : met)
+	{
+		if (side != UINT64_MAX)
+		{
+			found.pieces[found.of[side / 2]].rays[side % 2] += 1.0;
+		}
+	}
+	return found;
+}
+
+// Sides that rays from the level's cameras, or from automatic ones, hit.
+std::vector<uint64_t> lookFromCameras(const Tracer& tracer, const RunSettings& run)
+{
+	constexpr std::size_t kRays = 200'000;
+	const Level& level = tracer.level();
+	const auto eyes = mapped(level.cameras.empty() ? chosenCameras(tracer, run) : level.cameras,
+							 [](const LevelCamera& camera)
+							 {
+								 const glm::dvec3 eye(camera.world_from_camera[3]);
+								 return Bounds{eye, eye};
+							 });
+	return lookAround(tracer, eyes, eyes.empty() ? 0 : kRays, 3, run.threads);
+}
 
 // A 16 : 9 grid of at least `count` points.
 struct Grid
@@ -499,18 +548,11 @@ std::optional<ReferencePoint> surfaceAlong(const Tracer& tracer, glm::dvec3 from
 
 MaterialSides materialSides(const Tracer& tracer, const RunSettings& run)
 {
-	constexpr std::size_t kRays = 200'000;
 	const Level& level = tracer.level();
-	std::vector<Bounds> eyes;
-	for (const LevelCamera& camera : level.cameras.empty() ? chosenCameras(tracer, run) : level.cameras)
-	{
-		const glm::dvec3 eye(camera.world_from_camera[3]);
-		eyes.push_back({eye, eye});
-	}
 	MaterialSides sides;
 	sides.fronts.assign(level.material_list.size(), 0);
 	sides.backs.assign(level.material_list.size(), 0);
-	for (const uint64_t side : lookAround(tracer, eyes, eyes.empty() ? 0 : kRays, 3, run.threads))
+	for (const uint64_t side : lookFromCameras(tracer, run))
 	{
 		if (side != UINT64_MAX)
 		{
@@ -595,7 +637,6 @@ ReceiverSides receiverSides(const Tracer& tracer, const SideSettings& settings, 
 
 std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::span<const Bounds> boxes, const RunSettings& run)
 {
-	constexpr double kNeeded = 0.005; // of a piece's area, or of the rays that hit it
 	constexpr std::size_t kLooks = 400'000;
 	constexpr double kLarge = 4.0; // times the mean area
 	constexpr std::size_t kSample = 4096;
@@ -605,28 +646,10 @@ std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::spa
 	SideSettings settings;
 	settings.boxes = boxes;
 	ReceiverSides sides = receiverSides(tracer, settings, run);
-	const std::vector<uint32_t> first = weldPositions(level.positions, run.threads);
-	Groups pieces(level.positions.size());
-	for (const glm::uvec3& t : level.triangles)
-	{
-		pieces.join(first[t.x], first[t.y]);
-		pieces.join(first[t.x], first[t.z]);
-	}
-	const std::vector<uint32_t> piece_of = mapped(level.triangles, [&](const glm::uvec3& t) { return pieces.rootOf(first[t.x]); });
-	std::vector<SurfacePiece> found(level.positions.size());
-	for (std::size_t i = 0; i < count; ++i)
-	{
-		found[piece_of[i]].triangles += 1;
-		found[piece_of[i]].area += glm::length(acrossOf(cornersOf(level, i)));
-	}
 	const std::vector<Bounds> eyes = boxes.empty() ? standingEyes(tracer, run) : std::vector<Bounds>{};
-	for (const uint64_t side : lookAround(tracer, eyes, eyes.empty() ? 0 : kLooks, 4, run.threads))
-	{
-		if (side != UINT64_MAX)
-		{
-			found[piece_of[side / 2]].rays[side % 2] += 1.0;
-		}
-	}
+	SurfacePieces looked = surfacePieces(level, lookAround(tracer, eyes, eyes.empty() ? 0 : kLooks, 4, run.threads), run);
+	const std::vector<uint32_t>& piece_of = looked.of;
+	std::vector<SurfacePiece>& found = looked.pieces;
 	for (std::size_t i = 0; i < count; ++i)
 	{
 		const SurfacePiece& piece = found[piece_of[i]];
@@ -660,6 +683,21 @@ std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::spa
 		return level.material_list[level.materials[i]].alpha_mode == AlphaMode::opaque && piece.needed <= kNeeded * piece.area;
 	};
 	return listOf(count, [&](std::size_t i) { return static_cast<uint8_t>(isIdle(i) ? 1 : 0); });
+}
+
+std::vector<uint8_t> seenBacks(const Tracer& tracer, std::span<const Bounds> boxes, const RunSettings& run)
+{
+	constexpr double kFewest = 20.0; // rays
+	constexpr std::size_t kRays = 200'000;
+	const Level& level = tracer.level();
+	const auto found =
+		surfacePieces(level, boxes.empty() ? lookFromCameras(tracer, run) : lookAround(tracer, boxes, kRays, 3, run.threads), run);
+	return mapped(found.of,
+				  [&](uint32_t of)
+				  {
+					  const auto& [fronts, backs] = found.pieces[of].rays;
+					  return static_cast<uint8_t>(backs >= kFewest && backs > kNeeded * fronts ? 1 : 0);
+				  });
 }
 
 std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distance_m, const ReceiverSettings& settings,

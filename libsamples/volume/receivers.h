@@ -91,6 +91,10 @@ ReceiverSides receiverSides(const Tracer& tracer, const SideSettings& settings, 
 // instead. Sampled, at 32 rays a triangle or more.
 std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::span<const Bounds> boxes, const RunSettings& run);
 
+// Per triangle 1 if rays from the boxes, from the level's cameras or from automatic ones hit backs of its piece of surface, in at
+// least half a percent of the hits. Then someone looks into it, although it may be closed.
+std::vector<uint8_t> seenBacks(const Tracer& tracer, std::span<const Bounds> boxes, const RunSettings& run);
+
 // True if a ray from a point, lifted off its surface along the unit `normal`, first hits the sky, a front, or a back of a material
 // that is not oriented. Uses 8 directions of the hemisphere, rotated by `turn`. Inside a solid, rays hit only backs.
 bool isOpen(const Tracer& tracer, const MaterialSides& materials, glm::dvec3 point, glm::dvec3 normal, uint32_t turn);

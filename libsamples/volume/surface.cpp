@@ -491,6 +491,10 @@ void findSides(const Soup& soup, const OccluderSettings& settings, const Finder&
 	joinPieces(soup, finder, surface, pieces);
 	measureHoles(soup, finder, surface, pieces);
 	const std::vector<uint8_t> known = knownOriented(soup, settings);
+	const auto isSeenInside = [&](std::size_t i)
+	{
+		return !settings.seen_backs.empty() && settings.seen_backs[soup.sources.empty() ? i : soup.sources[i]] != 0;
+	};
 	for (std::size_t i = 0; i < count; ++i)
 	{
 		const uint32_t piece = pieces.groups.rootOf(static_cast<uint32_t>(i));
@@ -500,8 +504,9 @@ void findSides(const Soup& soup, const OccluderSettings& settings, const Finder&
 			counts.components += 1;
 			counts.closed += closed ? 1U : 0U;
 		}
-		const bool oriented = settings.sides == Sides::oriented || (settings.sides == Sides::automatic && kindOf(soup, i) == 0 &&
-																	((closed && pieces.volumes[piece] > 0.0) || known[i] != 0));
+		const bool oriented =
+			settings.sides == Sides::oriented || (settings.sides == Sides::automatic && kindOf(soup, i) == 0 &&
+												  ((closed && pieces.volumes[piece] > 0.0 && !isSeenInside(i)) || known[i] != 0));
 		surface.two_sided[i] |= oriented ? uint8_t{0} : uint8_t{1};
 	}
 }

@@ -166,10 +166,16 @@ runningJob()
 	return 1
 }
 
-# killOne FOLDER: sends SIGKILL to the nook of a running job. The job must not be finished.
+# isFinished FOLDER: whether its result is there.
+isFinished()
+{
+	[ -e "${1#jobs_}.exr" ]
+}
+
+# killOne FOLDER: sends SIGKILL to the nook of a running job, unless all jobs are finished before.
 killOne()
 {
-	waitsFor 60 runningJob "$1" || problem "found no job that runs in $1"
+	waitsFor 60 eval "runningJob $1 || isFinished $1" || problem "found no job that runs in $1"
 	found=$(runningJob "$1") && kill -s KILL "$found" 2>/dev/null || return 1
 	echo "killed a share of $1"
 }

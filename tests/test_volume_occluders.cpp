@@ -328,7 +328,7 @@ TEST_CASE("volume: closed surfaces are oriented; sheets, rooms and masks have tw
 	open.level.triangles.pop_back();
 	open.level.materials.pop_back();
 	REQUIRE(twoSided(open.level) == 6);
-	Maker ball; // then without a few triangles: one looks into it
+	Maker ball; // then without a few triangles: small holes
 	ball.box({0, 0, 0}, {1, 1, 1});
 	ball.level.triangles.clear();
 	ball.level.materials.clear();
@@ -351,8 +351,11 @@ TEST_CASE("volume: closed surfaces are oriented; sheets, rooms and masks have tw
 	REQUIRE(occluders(ball.level).counts.closed == 1);
 	ball.level.triangles.resize(ball.level.triangles.size() - 3);
 	ball.level.materials.resize(ball.level.triangles.size());
-	REQUIRE(occluders(ball.level).counts.closed == 0);
-	REQUIRE(twoSided(ball.level) == occluders(ball.level).counts.polygons);
+	REQUIRE(occluders(ball.level).counts.closed == 1);
+	REQUIRE(twoSided(ball.level) == 0);
+	const Occluding exact = occluders(ball.level, {.holes = 0.0});
+	REQUIRE(exact.counts.closed == 0);
+	REQUIRE(exact.counts.two_sided == exact.counts.polygons);
 	Maker glass;
 	glass.box({0, 0, 0}, {1, 2, 3});
 	glass.level.material_list[0].alpha_mode = nook::AlphaMode::mask;

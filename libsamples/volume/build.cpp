@@ -248,6 +248,7 @@ std::vector<uint8_t> findOccluders(BuiltVolumes& built, const Level& level, cons
 {
 	OccluderSettings occluding = settings.occluders;
 	occluding.gap_halvings = settings.masks ? gapHalvings(level) : 0;
+	occluding.holes = settings.masks ? 0.0 : occluding.holes;
 	occluding.distance_m = settings.distance_m;
 	occluding.before_cutting = [&](uint64_t pieces)
 	{
@@ -603,6 +604,7 @@ AssetEstimate masksEstimate(const Level& level, const LevelFacts& facts, const R
 	OccluderSettings settings;
 	settings.distance_m = facts.radius_m;
 	settings.gap_halvings = gapHalvings(level);
+	settings.holes = 0.0;
 	Occluders found;
 	try
 	{

@@ -18,8 +18,8 @@ class Tracer;
 
 enum class Sides
 {
-	automatic, // opaque surfaces that are consistently wound and closed, with fronts outside, are oriented, unless seen from
-			   // inside; others are two-sided
+	automatic, // opaque surfaces that are consistently wound and closed (up to `holes`), with fronts outside, are oriented, unless
+			   // seen from inside; others are two-sided
 	oriented,  // every polygon darkens only what lies in front of it
 	two_sided,
 };
@@ -29,6 +29,9 @@ struct OccluderSettings
 	double distance_m = 1.0; // δ: unit of `flat` and `detail`; > 0, finite
 	bool merge = true;       // else one polygon per triangle, as in AOV
 	Sides sides = Sides::automatic;
+	// Share of a surface's area that its holes may have if it counts as closed (slits have none): a scanned figure stays below it,
+	// a vase's mouth is above. Backs that show through holes need 0, which suits masks; sums count the back of a thin wall twice.
+	double holes = 0.01;
 	double flat = 1e-4; // corners may deviate from a polygon's plane or outline by this fraction of δ; 1e-6 to 0.05
 	// Merged polygons longer than this multiple of δ are halved until shorter; 0: never; at least 0.1. The limit is doubled,
 	// repeatedly if needed, while that makes over a quarter more polygons. Smaller polygons also fall off sideways, closer to a
@@ -65,7 +68,7 @@ struct OccluderCounts
 	uint64_t uncut = 0;       // polygons before cutting
 	uint64_t clear = 0;       // polygons dropped: fully transparent masks
 	uint64_t components = 0;  // pieces of surface connected by edges
-	uint64_t closed = 0;      // closed components: every edge has as many triangles in each direction, or only slits are open
+	uint64_t closed = 0;      // closed components: every edge has as many triangles in each direction, up to `holes`
 	double extent_m = 0.0;    // length that merged polygons were cut to; infinite: none was cut; 0: not requested
 	double deviation_m = 0.0; // upper bound of how far simplification moved the surface
 };

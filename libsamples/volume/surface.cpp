@@ -427,9 +427,10 @@ struct PieceSums
 {
 	Groups groups;               // triangles connected by edges
 	std::vector<double> volumes; // six times the volume, by the component's first triangle; > 0: fronts are outside
+	std::vector<double> areas;   // twice the area
 	std::vector<double> holes;   // twice the greatest area that open edges can bound; 0: closed, except for slits
 
-	explicit PieceSums(std::size_t count) : groups(count), volumes(count, 0.0), holes(count, 0.0) {}
+	explicit PieceSums(std::size_t count) : groups(count), volumes(count, 0.0), areas(count, 0.0), holes(count, 0.0) {}
 };
 
 void joinPieces(const Soup& soup, const Finder& finder, const Surface& surface, PieceSums& pieces)
@@ -448,6 +449,7 @@ void joinPieces(const Soup& soup, const Finder& finder, const Surface& surface, 
 		const glm::dvec3 origin = positions[surface.triangles[piece].x];
 		const glm::dvec3 area = areaOf(positions, surface.triangles[i]);
 		pieces.volumes[piece] += glm::dot(positions[surface.triangles[i].x] - origin, area);
+		pieces.areas[piece] += glm::length(area);
 	}
 }
 
@@ -482,8 +484,8 @@ std::vector<uint8_t> knownOriented(const Soup& soup, const OccluderSettings& set
 	return soup.sources.empty() ? of_level : mapped(soup.sources, [&](uint32_t source) { return of_level[source]; });
 }
 
-// A piece of surface is oriented if it is opaque, closed, and its fronts are outside. If they are inside, it is a room, is inside
-// out, or is the wall of a hollow: its backs may be seen, as through any hole.
+// A piece of surface is oriented if it is opaque, closed up to settings.holes, and its fronts are outside. If they are inside, it
+// is a room, is inside out, or is the wall of a hollow: its backs may be seen, as through any hole.
 void findSides(const Soup& soup, const OccluderSettings& settings, const Finder& finder, Surface& surface, OccluderCounts& counts)
 {
 	const std::size_t count = surface.triangles.size();
@@ -498,7 +500,7 @@ void findSides(const Soup& soup, const OccluderSettings& settings, const Finder&
 	for (std::size_t i = 0; i < count; ++i)
 	{
 		const uint32_t piece = pieces.groups.rootOf(static_cast<uint32_t>(i));
-		const bool closed = pieces.holes[piece] == 0.0;
+		const bool closed = pieces.holes[piece] <= settings.holes * pieces.areas[piece];
 		if (piece == i)
 		{
 			counts.components += 1;

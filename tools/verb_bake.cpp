@@ -454,7 +454,8 @@ Made makeAuto(const BakeOptions& options, const BakeInput& input, Facts& facts, 
 	{
 		made.warnings.push_back("--max-error: found an RMSE of " + roundedText(bake.expected_rmse, 3) + ", expected " +
 								roundedText(options.settings.max_error, 3) +
-								" at most; texels are no smaller than a 32nd of the radius");
+								" at most; texels are no smaller than a 32nd of the radius" +
+								(bake.vertices.back.empty() ? "" : ", and backs have values at the vertices only"));
 	}
 	return made;
 }

@@ -31,7 +31,7 @@ constexpr double kWorthATry = 1e-4;    // squared error at the vertices
 constexpr int kPage_px = 4096;
 constexpr double kTexelsOfPage = 8e6; // half of it
 constexpr int kTries = 6;
-constexpr double kEnough = 1.02;       // of the error asked for
+constexpr double kEnough = 1.02;       // of the error asked for, or of the least
 constexpr double kPointsOfTexel = 4.0; // to measure errors, per texel of the trial
 constexpr double kFewestPoints = 262144.0;
 constexpr double kMostPoints = 1048576.0;
@@ -58,6 +58,7 @@ struct Choice
 	std::vector<int> levels; // per chart
 	double bytes = 0.0;      // more than with values alone
 	double square = 0.0;     // sum of squared errors over the area
+	bool is_short = false;   // no choice has as little error as was asked for
 };
 
 class Chooser
@@ -118,7 +119,7 @@ public:
 				measureTextures(made, choice);
 				m_texel_bytes = std::max(0.05, m_texel_bytes * (1.0 + (added - choice.bytes) / std::max(1.0, texelBytes(choice))));
 				const bool fits = by_bytes ? made.bytes <= m_wanted.bytes : made.expected_rmse <= kEnough * limit;
-				const bool is_last = fits && (!by_bytes || added > 0.85 * limit || i > 1);
+				const bool is_last = (fits && (!by_bytes || added > 0.85 * limit || i > 1)) || (choice.is_short && i > 0);
 				aim = fits ? limit : 0.96 * (i > 1 ? aim : limit);
 				if ((fits || !by_bytes) && made.expected_rmse < best.expected_rmse)
 				{
@@ -411,23 +412,35 @@ private:
 		return static_cast<double>(count) * (m_costs[piece].vertices <= kShort ? 6.0 : 12.0);
 	}
 
-	// The price at which the choice fits: bytes, or the error.
+	double rmseOf(const Choice& choice) const
+	{
+		return std::sqrt(std::max(0.0, choice.square) / weight());
+	}
+
+	// The price at which the choice fits: bytes, or the error. An error that no price reaches is replaced by one close to the
+	// least.
 	Choice choose(double aim) const
 	{
+		constexpr double kLowest = -60.0;
+		const double least = m_wanted.bytes > 0 ? 0.0 : kEnough * rmseOf(chooseAt(std::exp2(kLowest) * weight()));
+		const bool is_short = aim < least;
+		aim = std::max(aim, least);
 		double low = 0.0; // its logarithm: too many bytes, or as little error
 		double high = 0.0;
 		const auto fits = [&](double price)
 		{
 			const Choice choice = chooseAt(std::exp2(price) * weight());
-			return m_wanted.bytes > 0 ? choice.bytes <= aim : std::sqrt(std::max(0.0, choice.square) / weight()) > aim;
+			return m_wanted.bytes > 0 ? choice.bytes <= aim : rmseOf(choice) > aim;
 		};
-		low = -60.0;
+		low = kLowest;
 		for (int i = 0; i < 40; ++i)
 		{
 			const double middle = 0.5 * (low + high);
 			(fits(middle) ? high : low) = middle;
 		}
-		return chooseAt(std::exp2(m_wanted.bytes > 0 ? high : low) * weight());
+		Choice choice = chooseAt(std::exp2(m_wanted.bytes > 0 ? high : low) * weight());
+		choice.is_short = is_short;
+		return choice;
 	}
 
 	// Errors of the result at other points, of all and of each kind.

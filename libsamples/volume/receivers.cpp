@@ -639,6 +639,8 @@ std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::spa
 {
 	constexpr std::size_t kLooks = 400'000;
 	constexpr double kLarge = 4.0; // times the mean area
+	constexpr std::size_t kFirstSample = 512;
+	constexpr double kClearly = 0.03; // of a piece's area in the first sample
 	constexpr std::size_t kSample = 4096;
 	constexpr double kFewest = 100.0; // rays that tell which sides of a piece people see
 	const Level& level = tracer.level();
@@ -656,26 +658,50 @@ std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::spa
 		const bool hidden = piece.rays[0] >= kFewest && piece.rays[1] <= kNeeded * piece.rays[0];
 		sides.seen[i] &= hidden ? kFrontSeen : kFrontSeen | kBackSeen;
 	}
-	std::vector<double> needed(count, 0.0);
-	inBlocks(count, 256, run, "backs",
-			 [&](std::size_t i)
-			 {
-				 const SurfacePiece& piece = found[piece_of[i]];
-				 const std::array<glm::dvec3, 3> corners = cornersOf(level, i);
-				 const glm::dvec3 across = acrossOf(corners);
-				 const double area = glm::length(across);
-				 const bool seen = (sides.seen[i] & kBackSeen) != 0;
-				 // A large piece is judged by its large triangles and a sample of the others.
-				 const bool large = area * static_cast<double>(piece.triangles) > kLarge * piece.area;
-				 const std::size_t every = seen || large ? 1 : std::max<std::size_t>(1, piece.triangles / kSample);
-				 const bool used = sides.there[i] != 0 && i % every == 0 &&
-								   (seen || seesReceiver(tracer, sides, corners, -across / area, distance_m, distance_m,
-														 static_cast<uint32_t>(i)));
-				 needed[i] = used ? area * static_cast<double>(every) : 0.0;
-			 });
 	for (std::size_t i = 0; i < count; ++i)
 	{
-		found[piece_of[i]].needed += needed[i];
+		const bool seen = sides.there[i] != 0 && (sides.seen[i] & kBackSeen) != 0;
+		found[piece_of[i]].needed += seen ? glm::length(acrossOf(cornersOf(level, i))) : 0.0;
+	}
+	// Area of the parts of pieces whose backs see a receiver: of all large triangles and a sample of the others. Of pieces with at
+	// least that many triangles that are not known to be needed.
+	const auto areasThatSee = [&](std::size_t sample, std::size_t fewest)
+	{
+		std::vector<double> areas(count, 0.0);
+		inBlocks(count, 256, run, "backs",
+				 [&](std::size_t i)
+				 {
+					 const SurfacePiece& piece = found[piece_of[i]];
+					 const bool asked = piece.triangles >= fewest && piece.needed <= kNeeded * piece.area;
+					 if (!asked || sides.there[i] == 0 || (sides.seen[i] & kBackSeen) != 0)
+					 {
+						 return;
+					 }
+					 const std::array<glm::dvec3, 3> corners = cornersOf(level, i);
+					 const glm::dvec3 across = acrossOf(corners);
+					 const double area = glm::length(across);
+					 const bool large = area * static_cast<double>(piece.triangles) > kLarge * piece.area;
+					 const std::size_t every = large ? 1 : std::max<std::size_t>(1, piece.triangles / sample);
+					 const bool sees = i % every == 0 && seesReceiver(tracer, sides, corners, -across / area, distance_m,
+																	  distance_m, static_cast<uint32_t>(i));
+					 areas[i] = sees ? area * static_cast<double>(every) : 0.0;
+				 });
+		std::vector<double> sums(found.size(), 0.0);
+		for (std::size_t i = 0; i < count; ++i)
+		{
+			sums[piece_of[i]] += areas[i];
+		}
+		return sums;
+	};
+	const std::vector<double> first_look = areasThatSee(kFirstSample, 2 * kFirstSample);
+	for (std::size_t k = 0; k < found.size(); ++k)
+	{
+		found[k].needed += first_look[k] > kClearly * found[k].area ? first_look[k] : 0.0;
+	}
+	const std::vector<double> second_look = areasThatSee(kSample, 0);
+	for (std::size_t k = 0; k < found.size(); ++k)
+	{
+		found[k].needed += second_look[k];
 	}
 	const auto isIdle = [&](std::size_t i)
 	{

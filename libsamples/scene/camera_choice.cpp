@@ -4,8 +4,8 @@
 //
 // Candidates. In levels: above floors, found by rays from above through all storeys, with ground around and head room; at standing
 // height, and about three times as high. Around objects (nothing to stand on, or less than 2 m in total), and if standing views
-// show too little, or mostly the backs of a hollow object: from outside, on a sphere, at a distance that shows the whole object, and
-// closer. Last, close to the largest triangles.
+// show too little, or mostly the backs of a hollow object: from outside, on a sphere, at a distance that shows the whole object,
+// and closer. Last, close to the largest triangles.
 //
 // Score of a picture of 32 × 18 rays, 60° high:
 //     place × seen × clear × facing × varied × (0.25 depths + 0.20 normals + 0.30 edges + 0.25 creases)

@@ -389,17 +389,21 @@ SurfacePieces surfacePieces(const Level& level, std::span<const uint64_t> met, c
 	return found;
 }
 
-// Sides that rays from the level's cameras, or from automatic ones, hit.
-std::vector<uint64_t> lookFromCameras(const Tracer& tracer, const RunSettings& run)
+// Sides that rays from the boxes hit; from the level's cameras if there are none, else from automatic ones.
+std::vector<uint64_t> lookFromCameras(const Tracer& tracer, std::span<const Bounds> boxes, const RunSettings& run)
 {
 	constexpr std::size_t kRays = 200'000;
 	const Level& level = tracer.level();
-	const auto eyes = mapped(level.cameras.empty() ? chosenCameras(tracer, run) : level.cameras,
-							 [](const LevelCamera& camera)
-							 {
-								 const glm::dvec3 eye(camera.world_from_camera[3]);
-								 return Bounds{eye, eye};
-							 });
+	std::vector<Bounds> eyes(boxes.begin(), boxes.end());
+	if (eyes.empty())
+	{
+		eyes = mapped(level.cameras.empty() ? chosenCameras(tracer, run) : level.cameras,
+					  [](const LevelCamera& camera)
+					  {
+						  const glm::dvec3 eye(camera.world_from_camera[3]);
+						  return Bounds{eye, eye};
+					  });
+	}
 	return lookAround(tracer, eyes, eyes.empty() ? 0 : kRays, 3, run.threads);
 }
 
@@ -552,7 +556,7 @@ MaterialSides materialSides(const Tracer& tracer, const RunSettings& run)
 	MaterialSides sides;
 	sides.fronts.assign(level.material_list.size(), 0);
 	sides.backs.assign(level.material_list.size(), 0);
-	for (const uint64_t side : lookFromCameras(tracer, run))
+	for (const uint64_t side : lookFromCameras(tracer, {}, run))
 	{
 		if (side != UINT64_MAX)
 		{
@@ -663,8 +667,8 @@ std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::spa
 		const bool seen = sides.there[i] != 0 && (sides.seen[i] & kBackSeen) != 0;
 		found[piece_of[i]].needed += seen ? glm::length(acrossOf(cornersOf(level, i))) : 0.0;
 	}
-	// Area of the parts of pieces whose backs see a receiver: of all large triangles and a sample of the others. Of pieces with at
-	// least that many triangles that are not known to be needed.
+	// Per piece, the area whose backs see a receiver, from all large triangles and a sample of the others; 0 for pieces with fewer
+	// triangles and for those known to be needed.
 	const auto areasThatSee = [&](std::size_t sample, std::size_t fewest)
 	{
 		std::vector<double> areas(count, 0.0);
@@ -714,10 +718,7 @@ std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::spa
 std::vector<uint8_t> seenBacks(const Tracer& tracer, std::span<const Bounds> boxes, const RunSettings& run)
 {
 	constexpr double kFewest = 20.0; // rays
-	constexpr std::size_t kRays = 200'000;
-	const Level& level = tracer.level();
-	const auto found =
-		surfacePieces(level, boxes.empty() ? lookFromCameras(tracer, run) : lookAround(tracer, boxes, kRays, 3, run.threads), run);
+	const SurfacePieces found = surfacePieces(tracer.level(), lookFromCameras(tracer, boxes, run), run);
 	return mapped(found.of,
 				  [&](uint32_t of)
 				  {

@@ -630,11 +630,11 @@ double bestUnfaced(std::span<const Sight> sights)
 	return best;
 }
 
-// Whether most views from floors show backs, as inside a hollow object with two-sided materials.
-bool areInsideHollow(std::span<const Sight> standing)
+// As views from floors do inside a hollow object with two-sided materials.
+bool mostlyShowBacks(std::span<const Sight> sights)
 {
-	const auto backs = std::count_if(standing.begin(), standing.end(), [](const Sight& sight) { return sight.mostly_backs; });
-	return 4 * static_cast<std::size_t>(backs) > 3 * standing.size();
+	const auto backs = std::count_if(sights.begin(), sights.end(), [](const Sight& sight) { return sight.mostly_backs; });
+	return 4 * static_cast<std::size_t>(backs) > 3 * sights.size();
 }
 
 // Fewer views are the first of more.
@@ -644,45 +644,35 @@ std::vector<LevelCamera> bestCameras(const Tracer& tracer, int count, const RunS
 	std::vector<CameraCandidate> candidates;
 	std::vector<Sight> sights;
 	std::vector<std::size_t> chosen;
-	const auto addJudged = [&](const std::vector<CameraCandidate>& more)
+	const auto sightsOf = [&](const std::vector<CameraCandidate>& views)
 	{
-		const std::size_t first = candidates.size();
-		candidates.insert(candidates.end(), more.begin(), more.end());
-		sights.resize(candidates.size());
-		ProgressCounter progress(run.progress, "cameras", more.size());
-		parallelFor(more.size(), run.threads,
+		ProgressCounter progress(run.progress, "cameras", views.size());
+		std::vector<Sight> judged(views.size());
+		parallelFor(views.size(), run.threads,
 					[&](std::size_t i)
 					{
-						sights[first + i] = judge(tracer, site, more[i]);
+						judged[i] = judge(tracer, site, views[i]);
 						progress.finishOne();
 					});
+		return judged;
 	};
-	addJudged(standingViews(tracer, site));
-	if (areInsideHollow(sights))
+	for (const auto& candidatesOf : {standingViews, viewsFromOutside, closeViews}) // if the previous ones show too little
 	{
+		if (chosen.size() >= static_cast<std::size_t>(count))
+		{
+			break;
+		}
+		const std::vector<CameraCandidate> more = candidatesOf(tracer, site);
+		const std::vector<Sight> judged = sightsOf(more);
 		// A room whose faces are all turned round also shows its backs, but little from outside.
-		const std::size_t standing = candidates.size();
-		addJudged(viewsFromOutside(tracer, site));
-		const auto outside = sights.begin() + static_cast<std::ptrdiff_t>(standing);
-		if (bestUnfaced({outside, sights.end()}) > 0.5 * bestUnfaced({sights.begin(), outside}))
+		if (mostlyShowBacks(judged) && !more.front().outside &&
+			bestUnfaced(sightsOf(viewsFromOutside(tracer, site))) > 0.5 * bestUnfaced(judged))
 		{
-			candidates.erase(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(standing));
-			sights.erase(sights.begin(), outside);
+			continue;
 		}
-		else
-		{
-			candidates.resize(standing);
-			sights.resize(standing);
-		}
-	}
-	pick(site, candidates, sights, count, chosen);
-	for (const auto& candidatesOf : {viewsFromOutside, closeViews}) // if the previous ones show too little
-	{
-		if (chosen.size() < static_cast<std::size_t>(count))
-		{
-			addJudged(candidatesOf(tracer, site));
-			pick(site, candidates, sights, count, chosen);
-		}
+		candidates.insert(candidates.end(), more.begin(), more.end());
+		sights.insert(sights.end(), judged.begin(), judged.end());
+		pick(site, candidates, sights, count, chosen);
 	}
 	std::vector<LevelCamera> cameras;
 	for (const std::size_t i : chosen)

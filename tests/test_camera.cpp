@@ -6,6 +6,7 @@
 
 #include "scene/builtin.h"
 #include "scene/camera_choice.h"
+#include "scene/describe.h"
 #include "scene/load.h"
 #include "scene/tracer.h"
 
@@ -301,6 +302,25 @@ TEST_CASE("camera: where those who stand see too little, views are from outside"
 	glass.material_list[0].alpha = 0.0;
 	measureAlpha(glass.material_list[0], glass.masks);
 	CHECK_THROWS_WITH(chooseCameras(Tracer(glass, {}), 1, {}), Catch::Contains("found no view that shows anything of it"));
+}
+
+TEST_CASE("camera: strays far away do not move the views", "[camera]")
+{
+	Level level = builtinLevel("courtyard");
+	const Bounds bounds = boundsOf(level);
+	CHECK(mainBounds(level).least == bounds.least);
+	CHECK(mainBounds(level).most == bounds.most);
+	const double radius_m = suggestedRadius(level);
+	test::addQuad(level, {300.0, 5.0, 0.0}, {0.1, 0.0, 0.0}, {0.0, 0.1, 0.0});
+	test::addQuad(level, {-900.0, 5.0, 9e3}, {0.5, 0.0, 0.0}, {0.0, 0.5, 0.0}); // the other is close to the rest in comparison
+	CHECK(mainBounds(level).least == bounds.least);
+	CHECK(mainBounds(level).most == bounds.most);
+	CHECK(suggestedRadius(level) == radius_m);
+	for (const LevelCamera& camera : chooseCameras(Tracer(level, {}), 4, {}))
+	{
+		CHECK(!camera.from_outside);
+		CHECK(glm::all(glm::lessThan(glm::abs(glm::dvec3(camera.world_from_camera[3])), glm::dvec3(100.0))));
+	}
 }
 
 TEST_CASE("camera: nobody stands on a roof where there is a floor", "[camera]")

@@ -340,6 +340,21 @@ TEST_CASE("scene: what reading finds stands in the table's order", "[scene]")
 	CHECK(findingsOf(bare.diagnosis) == "bad-polygons 1 kept, missing-uvs 1 kept, degenerate-triangles 2 dropped");
 }
 
+TEST_CASE("scene: meshes far from the rest", "[scene]")
+{
+	const TemporaryFolder folder;
+	const auto findings = [&](const std::string& far)
+	{
+		return loadText(folder / "a.obj", "o cube\n" + cubeObj() + "o far\nv " + far + " 0 0\nv " + far + ".05 0 0\nv " + far +
+											  " 0.05 0\nf -1 -2 -3\n")
+			.diagnosis;
+	};
+	CHECK(findings("3").findings.empty()); // the whole is not twice as large as the cube
+	const Diagnosis strays = findings("9");
+	REQUIRE(findingsOf(strays) == "strays 1 kept");
+	CHECK(strays.findings[0].first == "mesh 'far', 8 m from the rest, which --ignore '/far' leaves out");
+}
+
 TEST_CASE("scene: strict makes findings errors", "[scene]")
 {
 	const TemporaryFolder folder;

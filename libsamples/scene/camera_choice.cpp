@@ -302,7 +302,7 @@ std::vector<CameraCandidate> closeViews(const Tracer& tracer, const Site& /*site
 Site siteOf(const Level& level)
 {
 	Site site;
-	site.bounds = boundsOf(level);
+	site.bounds = mainBounds(level);
 	site.diagonal = std::max(glm::length(site.bounds.most - site.bounds.least), 1e-9);
 	// Eye height of a person; in levels too large for metres, a fiftieth of the diagonal.
 	site.eye_height = site.diagonal <= kMetreDiagonal ? 1.6 : 0.02 * site.diagonal;

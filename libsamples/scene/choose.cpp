@@ -5,6 +5,7 @@
 #include "core/words.h"
 #include "scene/load_parts.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
@@ -284,6 +285,19 @@ void findUndrawn(const Level& level, std::vector<Finding>& findings)
 		}
 		report(findings, id, tally);
 	}
+	const Bounds main = mainBounds(level);
+	Tally strays;
+	for (const Mesh& mesh : level.meshes)
+	{
+		const Bounds box = boundsOf(level, mesh);
+		const double away_m = glm::length(glm::max(glm::max(box.least - main.most, main.least - box.most), 0.0));
+		if (away_m > 0.0 && mesh.triangle_count > 0)
+		{
+			strays.add("mesh '" + mesh.name + "', " + roundedText(away_m, 3) + " m from the rest, which --ignore '" +
+					   pathOf(level, mesh) + "' leaves out");
+		}
+	}
+	report(findings, "strays", strays);
 }
 
 } // namespace nook

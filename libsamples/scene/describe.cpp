@@ -507,7 +507,7 @@ void describeLevel(const LoadedLevel& loaded, const LevelFacts& found, const Ass
 
 double suggestedRadius(const Level& level)
 {
-	const Bounds bounds = boundsOf(level);
+	const Bounds bounds = mainBounds(level);
 	const double wanted = glm::length(bounds.most - bounds.least) / 40.0;
 	if (!(wanted > 1e-5))
 	{
@@ -531,7 +531,7 @@ double suggestedRadius(const Level& level)
 LevelFacts levelFacts(const Level& level, int threads)
 {
 	LevelFacts facts;
-	const Bounds bounds = boundsOf(level);
+	const Bounds bounds = mainBounds(level);
 	facts.diagonal_m = glm::length(bounds.most - bounds.least);
 	facts.radius_m = suggestedRadius(level);
 	facts.place_of = weldPositions(level.positions, threads);

@@ -2,12 +2,16 @@
 #include "scene/level.h"
 
 #include "scene/load_parts.h"
+#include "scene/ray_triangle.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <vector>
 
 namespace nook
 {
@@ -70,6 +74,62 @@ std::vector<uint8_t> placesOf(const Level& level, const CellSettings& settings)
 	return places;
 }
 
+// Bounding box of the triangles whose centres are in a box, without those at both ends of each axis that have 1/2000 of their area.
+Bounds withoutEnds(const Level& level, const Bounds& box)
+{
+	constexpr int kBins = 4096;
+	constexpr double kEnd = 1.0 / 2000.0;
+	const auto binsOf = [&](std::size_t triangle)
+	{
+		const glm::uvec3& t = level.triangles[triangle];
+		const glm::dvec3 centre = (level.positions[t.x] + level.positions[t.y] + level.positions[t.z]) / 3.0;
+		return glm::floor((centre - box.least) / glm::max(box.most - box.least, 1e-300) * static_cast<double>(kBins));
+	};
+	std::array<std::vector<double>, 3> areas;
+	areas.fill(std::vector<double>(kBins + 1, 0.0));
+	double all = 0.0;
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
+	{
+		const glm::dvec3 bins = binsOf(i);
+		if (glm::all(glm::greaterThanEqual(bins, glm::dvec3(0.0))) && glm::all(glm::lessThanEqual(bins, glm::dvec3(kBins))))
+		{
+			const double area = glm::length(twiceAreaOf(level, i));
+			for (int axis = 0; axis < 3; ++axis)
+			{
+				areas[static_cast<std::size_t>(axis)][static_cast<std::size_t>(bins[axis])] += area;
+			}
+			all += area;
+		}
+	}
+	glm::dvec3 first(0.0); // bins
+	glm::dvec3 last(kBins);
+	for (int axis = 0; axis < 3; ++axis)
+	{
+		const std::vector<double>& area = areas[static_cast<std::size_t>(axis)];
+		for (double below = area.front(); below <= kEnd * all && first[axis] < kBins;
+			 below += area[static_cast<std::size_t>(first[axis])])
+		{
+			first[axis] += 1.0;
+		}
+		for (double above = area.back(); above <= kEnd * all && last[axis] > 0.0;
+			 above += area[static_cast<std::size_t>(last[axis])])
+		{
+			last[axis] -= 1.0;
+		}
+	}
+	Bounds rest;
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
+	{
+		const glm::dvec3 bins = binsOf(i);
+		if (glm::all(glm::greaterThanEqual(bins, first)) && glm::all(glm::lessThanEqual(bins, last)))
+		{
+			const Bounds bounds = boundsOf(level, i);
+			rest = {glm::min(rest.least, bounds.least), glm::max(rest.most, bounds.most)};
+		}
+	}
+	return rest;
+}
+
 } // namespace
 
 Bounds boundsOf(const Level& level, std::size_t triangle)
@@ -97,6 +157,20 @@ Bounds boundsOf(const Level& level, const Mesh& mesh)
 		bounds = {glm::min(bounds.least, one.least), glm::max(bounds.most, one.most)};
 	}
 	return bounds;
+}
+
+Bounds mainBounds(const Level& level)
+{
+	Bounds bounds = boundsOf(level);
+	for (;;)
+	{
+		const Bounds rest = withoutEnds(level, bounds);
+		if (!(2.0 * glm::distance(rest.least, rest.most) < glm::distance(bounds.least, bounds.most)))
+		{
+			return bounds;
+		}
+		bounds = rest;
+	}
 }
 
 double alphaAt(const Mask& mask, glm::dvec2 uv)

@@ -125,6 +125,10 @@ Bounds boundsOf(const Level& level);
 Bounds boundsOf(const Level& level, std::size_t triangle);
 Bounds boundsOf(const Level& level, const Mesh& mesh);
 
+// Bounding box without strays: if dropping the triangles at both ends of each axis, 1/2000 of the area each, more than halves the
+// diagonal, the box of the rest, and so on.
+Bounds mainBounds(const Level& level);
+
 // Alpha of a mask at texture coordinates (u, v), in [0, 1], magnified like a texture unit with the mask's filter.
 double alphaAt(const Mask& mask, glm::dvec2 uv);
 

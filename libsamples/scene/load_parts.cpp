@@ -143,7 +143,7 @@ struct Kind
 	std::string_view id;
 	std::string_view action;
 };
-constexpr std::array<Kind, 25> kKinds{{
+constexpr std::array<Kind, 26> kKinds{{
 	{"missing-file", "ignored"},
 	{"hidden-nodes", "dropped"},
 	{"lower-lods", "dropped"},
@@ -169,6 +169,7 @@ constexpr std::array<Kind, 25> kKinds{{
 	{"large-coordinates", "kept"},
 	{"collision-meshes", "kept"},
 	{"skies", "kept"},
+	{"strays", "kept"},
 }};
 
 std::size_t rankOf(std::string_view id)

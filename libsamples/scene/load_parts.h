@@ -129,7 +129,7 @@ struct Tally
 	}
 };
 
-// Reports parts whose names say that nobody sees them: collision meshes and skies.
+// Reports parts that a level rarely needs: collision meshes and skies, by their names; skies and strays, by their place.
 void findUndrawn(const Level& level, std::vector<Finding>& findings);
 
 // Adds a finding if the tally is not empty; diagnosis.cpp's table gives its action.

@@ -187,7 +187,7 @@ void findReceivers(DropSearch& search, const RunSettings& run)
 
 void findInside(DropSearch& search)
 {
-	const Bounds& bounds = search.tracer.bounds();
+	const Bounds bounds = mainBounds(search.tracer.level());
 	const double step_m = 0.005 * glm::length(bounds.most - bounds.least);
 	const auto is_open_over = [&](std::span<const glm::dvec3> corners, std::size_t i, unsigned side)
 	{

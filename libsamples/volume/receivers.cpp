@@ -190,7 +190,7 @@ void leaveOutInside(const Tracer& tracer, ReceiverSides& sides, const RunSetting
 {
 	constexpr uint32_t kAround = 9; // triangles at the three corners, itself three times
 	const Level& level = tracer.level();
-	const Bounds& bounds = tracer.bounds();
+	const Bounds bounds = mainBounds(level);
 	const double step_m = 0.005 * glm::length(bounds.most - bounds.least);
 	const auto insideOf = [&](std::size_t i, unsigned asked, bool fully)
 	{

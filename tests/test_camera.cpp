@@ -273,6 +273,11 @@ TEST_CASE("camera: where those who stand see too little, views are from outside"
 	test::addSphere(ball, {0.0, 0.5, 0.0}, 0.5, 12, 24);
 	test::addBox(ball, {-0.1, 0.4, -0.1}, {0.1, 0.6, 0.1}); // in it
 	viewsOf(ball, 6, 10);
+	Level desk = test::emptyLevel(); // people could stand on it, but would not see it
+	test::addBox(desk, {-1.0, 0.9, -0.8}, {1.0, 1.0, 0.8});
+	test::addBox(desk, {-1.0, 0.0, -0.8}, {-0.9, 0.9, 0.8});
+	test::addBox(desk, {0.4, 0.0, -0.8}, {1.0, 0.9, 0.8});
+	viewsOf(desk, 6, 10);
 	Level wire = test::emptyLevel();
 	test::addBox(wire, {0.0, 0.0, 0.0}, {0.001, 40.0, 0.001});
 	viewsOf(wire, 6, 1);

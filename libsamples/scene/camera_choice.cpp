@@ -3,9 +3,9 @@
 // each showing something new.
 //
 // Candidates. In levels: above floors, found by rays from above through all storeys, with ground around and head room; at standing
-// height, and about three times as high. Around objects (nothing to stand on, or less than 2 m in total), and if standing views
-// show too little, or mostly the backs of a hollow object: from outside, on a sphere, at a distance that shows the whole object,
-// and closer. Last, close to the largest triangles.
+// height, and about three times as high. Around objects (nothing to stand on, less than 2 m in total, or standing views that score
+// less than 0.65 times as much, or show mostly the backs of a hollow object), and if standing views show too little: from outside,
+// on a sphere, at a distance that shows the whole object, and closer. Last, close to the largest triangles.
 //
 // Score of a picture of 32 × 18 rays, 60° high:
 //     place × seen × clear × facing × varied × (0.25 depths + 0.20 normals + 0.30 edges + 0.25 creases)
@@ -240,7 +240,7 @@ std::vector<CameraCandidate> standingViews(const Tracer& tracer, const Site& sit
 }
 
 // From outside. The box's corners lie within the picture, or for the nearer half somewhat outside of it.
-std::vector<CameraCandidate> viewsFromOutside(const Tracer& /*tracer*/, const Site& site)
+std::vector<CameraCandidate> viewsFromOutside(const Site& site)
 {
 	const glm::dvec3 centre = 0.5 * (site.bounds.least + site.bounds.most);
 	const glm::dvec3 half = 0.5 * (site.bounds.most - site.bounds.least);
@@ -273,7 +273,7 @@ std::vector<CameraCandidate> viewsFromOutside(const Tracer& /*tracer*/, const Si
 
 // In front of the largest triangles: finds thin wires that a small picture of the whole misses. So close that the circle inscribed
 // in each triangle fills half of the picture's height.
-std::vector<CameraCandidate> closeViews(const Tracer& tracer, const Site& /*site*/)
+std::vector<CameraCandidate> closeViews(const Tracer& tracer)
 {
 	const Level& level = tracer.level();
 	std::vector<std::pair<double, std::size_t>> largest; // negative area, and the triangle
@@ -620,59 +620,68 @@ Verdict verdictOf(const Tracer& tracer, glm::dvec3 from, glm::dvec3 way, double 
 	return verdict;
 }
 
-double bestUnfaced(std::span<const Sight> sights)
+// Greatest value of a member.
+double bestOf(std::span<const Sight> sights, double Sight::*value)
 {
 	double best = 0.0;
 	for (const Sight& sight : sights)
 	{
-		best = std::max(best, sight.unfaced);
+		best = std::max(best, sight.*value);
 	}
 	return best;
 }
 
-// As views from floors do inside a hollow object with two-sided materials.
-bool mostlyShowBacks(std::span<const Sight> sights)
+// Whether the level is an object: standing views are from its own top or from inside it, and views from outside show more.
+bool isObject(std::span<const Sight> standing, std::span<const Sight> outside)
 {
-	const auto backs = std::count_if(sights.begin(), sights.end(), [](const Sight& sight) { return sight.mostly_backs; });
-	return 4 * static_cast<std::size_t>(backs) > 3 * sights.size();
+	const auto backs = std::count_if(standing.begin(), standing.end(), [](const Sight& sight) { return sight.mostly_backs; });
+	// A room whose faces are all turned round also shows its backs, but little from outside.
+	return 4 * static_cast<std::size_t>(backs) > 3 * standing.size()
+			   ? bestOf(outside, &Sight::unfaced) > 0.5 * bestOf(standing, &Sight::unfaced)
+			   : 0.65 * bestOf(outside, &Sight::score) > bestOf(standing, &Sight::score);
 }
 
 // Fewer views are the first of more.
 std::vector<LevelCamera> bestCameras(const Tracer& tracer, int count, const RunSettings& run)
 {
 	const Site site = siteOf(tracer.level());
-	std::vector<CameraCandidate> candidates;
-	std::vector<Sight> sights;
-	std::vector<std::size_t> chosen;
 	const auto sightsOf = [&](const std::vector<CameraCandidate>& views)
 	{
 		ProgressCounter progress(run.progress, "cameras", views.size());
-		std::vector<Sight> judged(views.size());
+		std::vector<Sight> sights(views.size());
 		parallelFor(views.size(), run.threads,
 					[&](std::size_t i)
 					{
-						judged[i] = judge(tracer, site, views[i]);
+						sights[i] = judge(tracer, site, views[i]);
 						progress.finishOne();
 					});
-		return judged;
+		return sights;
 	};
-	for (const auto& candidatesOf : {standingViews, viewsFromOutside, closeViews}) // if the previous ones show too little
+	std::vector<CameraCandidate> candidates;
+	std::vector<Sight> sights;
+	std::vector<std::size_t> chosen;
+	const auto add = [&](const std::vector<CameraCandidate>& views, const std::vector<Sight>& judged)
 	{
-		if (chosen.size() >= static_cast<std::size_t>(count))
-		{
-			break;
-		}
-		const std::vector<CameraCandidate> more = candidatesOf(tracer, site);
-		const std::vector<Sight> judged = sightsOf(more);
-		// A room whose faces are all turned round also shows its backs, but little from outside.
-		if (mostlyShowBacks(judged) && !more.front().outside &&
-			bestUnfaced(sightsOf(viewsFromOutside(tracer, site))) > 0.5 * bestUnfaced(judged))
-		{
-			continue;
-		}
-		candidates.insert(candidates.end(), more.begin(), more.end());
+		candidates.insert(candidates.end(), views.begin(), views.end());
 		sights.insert(sights.end(), judged.begin(), judged.end());
 		pick(site, candidates, sights, count, chosen);
+	};
+	const std::vector<CameraCandidate> standing = standingViews(tracer, site);
+	const std::vector<CameraCandidate> outside = viewsFromOutside(site);
+	const std::vector<Sight> from_floors = sightsOf(standing);
+	const std::vector<Sight> from_outside = sightsOf(outside);
+	if (!isObject(from_floors, from_outside))
+	{
+		add(standing, from_floors);
+	}
+	if (chosen.size() < static_cast<std::size_t>(count))
+	{
+		add(outside, from_outside);
+	}
+	if (chosen.size() < static_cast<std::size_t>(count))
+	{
+		const std::vector<CameraCandidate> close = closeViews(tracer);
+		add(close, sightsOf(close));
 	}
 	std::vector<LevelCamera> cameras;
 	for (const std::size_t i : chosen)

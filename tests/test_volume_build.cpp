@@ -390,6 +390,29 @@ TEST_CASE("build: points that all polygons get wrong say nothing about detail", 
 	CHECK(choice.detail == 0.0);
 }
 
+TEST_CASE("build: detail of masks by their error, of which one black point is a small part", "[volume_build]")
+{
+	const Level level = builtinLevel("cave:120000");
+	OccluderSettings occluders;
+	occluders.distance_m = 1.0;
+	DetailSettings detail;
+	detail.more = 0.25;
+	detail.ray_distance_m = 1.0;
+	detail.masks = true;
+	const Tracer tracer(level, {2, {}});
+	occluders.tracer = &tracer;
+	const DetailChoice choice = chooseDetail(level, tracer, occluders, detail, {2, {}});
+	bool outvoted = false; // a step that black points alone would rule out
+	for (const DetailTrial& trial : choice.trials)
+	{
+		CHECK(trial.fitted_rmse <= trial.paper_rmse);
+		outvoted = outvoted || (trial.fitted_rmse <= 0.008 && trial.paper_rmse > 1.25 * choice.trials[0].paper_rmse);
+		const bool fine = trial.fitted_rmse <= 0.008 || trial.paper_rmse <= 1.25 * choice.trials[0].paper_rmse;
+		CHECK(fine == (trial.detail <= choice.detail));
+	}
+	CHECK(outvoted);
+}
+
 TEST_CASE("build: what simplification sank below the surface is not inside", "[volume_build]")
 {
 	VolumeSettings settings;

@@ -19,6 +19,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
@@ -61,7 +62,7 @@ namespace
 constexpr int kGapHalvings = 5;                                 // of leaves in masks; tuned on a pine and a town with creepers
 constexpr std::ptrdiff_t kMostParts = std::ptrdiff_t{1} << 21U; // halvings of masked triangles end where they may become more
 constexpr double kMaskMore = 0.25;                              // increase of the masks' error that --detail auto allows
-constexpr double kMaskError = 0.010; // and an error that it allows in any case; in pictures 1.2 to 1.4 times as much (levels.md)
+constexpr double kMaskError = 0.008; // and an error that it allows in any case; in pictures 1.2 to 1.8 times as much (levels.md)
 constexpr int kMaskDirections = 128; // as aov-mask by default
 
 bool dropsAnything(const DropSettings& drop)
@@ -388,8 +389,11 @@ private:
 		}
 		if (m_masks)
 		{
-			const double rmse = rmseOf([](double occlusion) { return occlusion; }, values);
-			return {share, polygons, rmse, rmse};
+			const auto itself = [](double occlusion)
+			{
+				return occlusion;
+			};
+			return {share, polygons, rmseOf(itself, values), rmseOf(itself, values, kMissed)};
 		}
 		const auto by = [](const Compensation& curve)
 		{
@@ -401,13 +405,15 @@ private:
 		return {share, polygons, rmseOf(by(Compensation{}), values), rmseOf(by(fitCurve(values, m_occlusions)), values)};
 	}
 
-	template <class Curve> double rmseOf(const Curve& curve, std::span<const double> values) const
+	// Errors above `most` count as that.
+	template <class Curve>
+	double rmseOf(const Curve& curve, std::span<const double> values, double most = std::numeric_limits<double>::infinity()) const
 	{
 		double squares = 0.0;
 		for (std::size_t i = 0; i < values.size(); ++i)
 		{
-			const double difference = curve(values[i]) - m_occlusions[i];
-			squares += difference * difference;
+			const double error = std::min(std::fabs(curve(values[i]) - m_occlusions[i]), most);
+			squares += error * error;
 		}
 		return std::sqrt(squares / static_cast<double>(values.size()));
 	}
@@ -581,9 +587,10 @@ DetailChoice chooseDetail(const Level& level, const Tracer& tracer, const Occlud
 		const DetailTrial trial = trials.at(kLadder[middle]);
 		choice.trials.push_back(trial);
 		const double fitted_more = detail.fitted ? detail.more : kShapeMore * detail.more;
-		const bool allowed = detail.masks ? trial.paper_rmse <= std::max((1.0 + detail.more) * whole.paper_rmse, kMaskError)
-										  : trial.fitted_rmse <= (1.0 + fitted_more) * whole.fitted_rmse &&
-												(detail.fitted || trial.paper_rmse <= (1.0 + detail.more) * whole.paper_rmse);
+		const bool allowed = detail.masks
+								 ? trial.paper_rmse <= (1.0 + detail.more) * whole.paper_rmse || trial.fitted_rmse <= kMaskError
+								 : trial.fitted_rmse <= (1.0 + fitted_more) * whole.fitted_rmse &&
+									   (detail.fitted || trial.paper_rmse <= (1.0 + detail.more) * whole.paper_rmse);
 		(allowed ? good : unknown) = allowed ? middle : middle + 1;
 		best = allowed ? trial : best;
 		progress.finishOne();

@@ -46,7 +46,7 @@ struct DetailTrial
 	double detail = 0.0;      // relative to δ
 	uint64_t polygons = 0;    // convex polygons before dropping any
 	double paper_rmse = 0.0;  // visibility error against rays with the paper's curve, or of masks
-	double fitted_rmse = 0.0; // with a curve fitted to these points
+	double fitted_rmse = 0.0; // with a curve fitted to these points; of masks, with errors above 0.2 counted as 0.2
 };
 
 struct DetailChoice

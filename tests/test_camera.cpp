@@ -278,6 +278,15 @@ TEST_CASE("camera: where those who stand see too little, views are from outside"
 	test::addBox(desk, {-1.0, 0.0, -0.8}, {-0.9, 0.9, 0.8});
 	test::addBox(desk, {0.4, 0.0, -0.8}, {1.0, 0.9, 0.8});
 	viewsOf(desk, 6, 10);
+	// A maze of rooms with ceilings at a height of 1, as in a game whose unit is a storey.
+	Level maze = test::emptyLevel();
+	test::addBox(maze, {-10, -1, -10}, {10, 0, 10});
+	test::addQuad(maze, {-10, 1, -10}, {20, 0, 0}, {0, 0, 20}); // faces down
+	for (int i = 0; i < 5; ++i)
+	{
+		test::addBox(maze, {-8.0 + 4.0 * i, 0, -10}, {-7.0 + 4.0 * i, 1, i % 2 == 0 ? 6.0 : -4.0});
+	}
+	viewsOf(maze, 0, 10);
 	Level wire = test::emptyLevel();
 	test::addBox(wire, {0.0, 0.0, 0.0}, {0.001, 40.0, 0.001});
 	viewsOf(wire, 6, 1);

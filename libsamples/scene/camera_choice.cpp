@@ -212,10 +212,16 @@ std::vector<CameraCandidate> standingViews(const Tracer& tracer, const Site& sit
 	{
 		return {};
 	}
-	const std::vector<CameraCandidate> eyes = standingEyes(tracer, site);
-	if (eyes.size() < kMinStands)
+	std::vector<CameraCandidate> eyes = standingEyes(tracer, site);
+	if (eyes.size() < kMinStands) // rooms of a game whose unit is a storey
 	{
-		return {};
+		Site lower = site;
+		lower.eye_height *= 0.5;
+		eyes = standingEyes(tracer, lower);
+		if (eyes.size() < 2 * kMinStands) // a cavity
+		{
+			return {};
+		}
 	}
 	const std::size_t count = std::min(eyes.size(), kMaxStands);
 	std::vector<CameraCandidate> candidates;

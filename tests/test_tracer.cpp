@@ -4,12 +4,14 @@
 #include "testing.h"
 
 #include "scene/builtin.h"
+#include "scene/level_glb.h"
 #include "scene/ray_triangle.h"
 #include "scene/reference.h"
 #include "scene/sample_set.h"
 #include "scene/tracer.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 namespace
@@ -309,4 +311,34 @@ TEST_CASE("samples: every placement has the mean of its domain in expectation", 
 	CAPTURE(static_cast<int>(domain), count);
 	CHECK(mean == Approx(expected).margin(0.004));
 	CHECK(std::fabs(first) < 0.006);
+}
+
+TEST_CASE("tracer: strays a thousand times as far away do not blur the rest", "[reference]")
+{
+	Level level = builtinLevel("courtyard");
+	const Tracer before(level, {});
+	const glm::dvec3 eye(0.3, 1.6, 0.2);
+	const glm::dvec3 way(0.36, -0.48, 0.8);
+	const RayHit hit = before.nearest(eye, way, 100.0);
+	REQUIRE(hit.hit);
+	const glm::dvec3 far(2e7, 3.0, 0.0);
+	addQuad(level, far - glm::dvec3(0.0, 5.0, 5.0), {0.0, 10.0, 0.0}, {0.0, 0.0, 10.0});
+	const Tracer after(level, {});
+	CHECK(after.error() == before.error());
+	CHECK(after.bounds().most.x == far.x);
+	const RayHit again = after.nearest(eye, way, 100.0);
+	CHECK(again.triangle == hit.triangle);
+	CHECK(again.distance == hit.distance);
+	const glm::dvec3 above(0.0, 200.0, 0.0);
+	CHECK(after.nearest(above, glm::normalize(far - above), 3e7).triangle >= level.triangles.size() - 2);
+	CHECK(glbOrigin(preciseBounds(level)) == glm::dvec3(0.0));
+	// As many there as here: then all is precise to the size of the whole.
+	const std::size_t triangles = level.triangles.size();
+	for (std::size_t i = 0; i < triangles; ++i)
+	{
+		const glm::uvec3 t = level.triangles[i];
+		addTriangle(level, addVertex(level, far + level.positions[t.x]), addVertex(level, far + level.positions[t.y]),
+					addVertex(level, far + level.positions[t.z]));
+	}
+	CHECK(preciseBounds(level).most.x > far.x);
 }

@@ -36,12 +36,13 @@ std::string_view nameOf(AlphaMode mode)
 	return mode == AlphaMode::mask ? "mask" : mode == AlphaMode::blend ? "blend" : "opaque";
 }
 
-void addBounds(const Bounds& bounds, Facts& facts)
+void addBounds(const Level& level, Facts& facts)
 {
+	const Bounds bounds = boundsOf(level);
 	facts.numbers("least_m", {bounds.least.x, bounds.least.y, bounds.least.z});
 	facts.numbers("most_m", {bounds.most.x, bounds.most.y, bounds.most.z});
 	const glm::dvec3 size = bounds.most - bounds.least;
-	const glm::dvec3 origin = glbOrigin(bounds);
+	const glm::dvec3 origin = glbOrigin(preciseBounds(level));
 	facts.numbers("origin_m", {origin.x, origin.y, origin.z});
 	facts.line("bounds: " + pointText(bounds.least) + " to " + pointText(bounds.most) + " m, " + roundedText(size.x, 4) + " x " +
 			   roundedText(size.y, 4) + " x " + roundedText(size.z, 4) + " m");
@@ -480,7 +481,7 @@ void describeLevel(const LoadedLevel& loaded, const LevelFacts& found, const Ass
 	facts.whole("vertices", level.positions.size());
 	facts.line("level: " + oneLine(level.name) + ", " + counted(level.triangles.size(), "triangle", "triangles") + " of " +
 			   counted(level.positions.size(), "vertex", "vertices") + " in " + counted(level.meshes.size(), "mesh", "meshes"));
-	addBounds(boundsOf(level), facts);
+	addBounds(level, facts);
 	const double area = sumOver(areasOf(level));
 	facts.number("area_m2", area);
 	facts.line("surface: " + roundedText(area, 6) + " m2");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/level.h"
 
+#include "core/lists.h"
 #include "scene/load_parts.h"
 #include "scene/ray_triangle.h"
 
@@ -74,60 +75,109 @@ std::vector<uint8_t> placesOf(const Level& level, const CellSettings& settings)
 	return places;
 }
 
-// Bounding box of the triangles whose centres are in a box, without those at both ends of each axis that have 1/2000 of their area.
-Bounds withoutEnds(const Level& level, const Bounds& box)
+bool isHalved(const Bounds& all, const Bounds& rest)
+{
+	return 2.0 * glm::distance(rest.least, rest.most) < glm::distance(all.least, all.most);
+}
+
+// Bounding box of the boxes whose centres are in `all`, without those at both ends of each axis that have `end` of their weight, by
+// a sample of them; of the sample alone if that is at least half as large.
+Bounds withoutEnds(const Bounds& all, std::size_t count, const BoxOf& boxOf, const WeightOf& weightOf, double end)
 {
 	constexpr int kBins = 4096;
-	constexpr double kEnd = 1.0 / 2000.0;
-	const auto binsOf = [&](std::size_t triangle)
+	const std::size_t step = count / 100'000 + 1;
+	const auto binsOf = [&](const Bounds& box)
 	{
-		const glm::uvec3& t = level.triangles[triangle];
-		const glm::dvec3 centre = (level.positions[t.x] + level.positions[t.y] + level.positions[t.z]) / 3.0;
-		return glm::floor((centre - box.least) / glm::max(box.most - box.least, 1e-300) * static_cast<double>(kBins));
+		const glm::dvec3 centre = 0.5 * (box.least + box.most);
+		return glm::floor((centre - all.least) / glm::max(all.most - all.least, 1e-300) * static_cast<double>(kBins));
 	};
-	std::array<std::vector<double>, 3> areas;
-	areas.fill(std::vector<double>(kBins + 1, 0.0));
-	double all = 0.0;
-	for (std::size_t i = 0; i < level.triangles.size(); ++i)
+	const auto areIn = [](glm::dvec3 bins, glm::dvec3 first, glm::dvec3 last)
 	{
-		const glm::dvec3 bins = binsOf(i);
-		if (glm::all(glm::greaterThanEqual(bins, glm::dvec3(0.0))) && glm::all(glm::lessThanEqual(bins, glm::dvec3(kBins))))
-		{
-			const double area = glm::length(twiceAreaOf(level, i));
-			for (int axis = 0; axis < 3; ++axis)
-			{
-				areas[static_cast<std::size_t>(axis)][static_cast<std::size_t>(bins[axis])] += area;
-			}
-			all += area;
-		}
-	}
+		return glm::all(glm::greaterThanEqual(bins, first)) && glm::all(glm::lessThanEqual(bins, last));
+	};
 	glm::dvec3 first(0.0); // bins
 	glm::dvec3 last(kBins);
+	std::array<std::vector<double>, 3> weights;
+	weights.fill(std::vector<double>(kBins + 1, 0.0));
+	for (std::size_t i = 0; i < count; i += step)
+	{
+		const glm::dvec3 bins = binsOf(boxOf(i));
+		const double weight = areIn(bins, first, last) ? weightOf(i) : 0.0;
+		for (int axis = 0; axis < 3 && weight > 0.0; ++axis)
+		{
+			weights[static_cast<std::size_t>(axis)][static_cast<std::size_t>(bins[axis])] += weight;
+		}
+	}
+	const double most = end * sumOver(weights[0]);
 	for (int axis = 0; axis < 3; ++axis)
 	{
-		const std::vector<double>& area = areas[static_cast<std::size_t>(axis)];
-		for (double below = area.front(); below <= kEnd * all && first[axis] < kBins;
-			 below += area[static_cast<std::size_t>(first[axis])])
+		const std::vector<double>& weight = weights[static_cast<std::size_t>(axis)];
+		for (double below = weight.front(); below <= most && first[axis] < kBins;
+			 below += weight[static_cast<std::size_t>(first[axis])])
 		{
 			first[axis] += 1.0;
 		}
-		for (double above = area.back(); above <= kEnd * all && last[axis] > 0.0;
-			 above += area[static_cast<std::size_t>(last[axis])])
+		for (double above = weight.back(); above <= most && last[axis] > 0.0; above += weight[static_cast<std::size_t>(last[axis])])
 		{
 			last[axis] -= 1.0;
 		}
 	}
-	Bounds rest;
-	for (std::size_t i = 0; i < level.triangles.size(); ++i)
+	const auto restOf = [&](std::size_t every)
 	{
-		const glm::dvec3 bins = binsOf(i);
-		if (glm::all(glm::greaterThanEqual(bins, first)) && glm::all(glm::lessThanEqual(bins, last)))
+		Bounds rest;
+		for (std::size_t i = 0; i < count; i += every)
 		{
-			const Bounds bounds = boundsOf(level, i);
-			rest = {glm::min(rest.least, bounds.least), glm::max(rest.most, bounds.most)};
+			const Bounds box = boxOf(i);
+			if (areIn(binsOf(box), first, last))
+			{
+				rest = {glm::min(rest.least, box.least), glm::max(rest.most, box.most)};
+			}
 		}
+		return rest;
+	};
+	const Bounds sampled = restOf(step);
+	return isHalved(all, sampled) ? restOf(1) : sampled;
+}
+
+Bounds boundsOf(std::size_t count, const BoxOf& boxOf)
+{
+	Bounds bounds;
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		const Bounds box = boxOf(i);
+		bounds = {glm::min(bounds.least, box.least), glm::max(bounds.most, box.most)};
 	}
-	return rest;
+	return bounds;
+}
+
+// Drops the ends as long as that more than halves the diagonal.
+Bounds withoutStrays(Bounds bounds, std::size_t count, const BoxOf& boxOf, const WeightOf& weightOf, double end)
+{
+	for (;;)
+	{
+		const Bounds rest = withoutEnds(bounds, count, boxOf, weightOf, end);
+		if (!isHalved(bounds, rest))
+		{
+			return bounds;
+		}
+		bounds = rest;
+	}
+}
+
+BoxOf boxesOf(const Level& level)
+{
+	return [&](std::size_t i)
+	{
+		return boundsOf(level, i);
+	};
+}
+
+WeightOf weightsOf(const Level& level)
+{
+	return [&](std::size_t i)
+	{
+		return glm::length(twiceAreaOf(level, i));
+	};
 }
 
 } // namespace
@@ -161,16 +211,19 @@ Bounds boundsOf(const Level& level, const Mesh& mesh)
 
 Bounds mainBounds(const Level& level)
 {
-	Bounds bounds = boundsOf(level);
-	for (;;)
-	{
-		const Bounds rest = withoutEnds(level, bounds);
-		if (!(2.0 * glm::distance(rest.least, rest.most) < glm::distance(bounds.least, bounds.most)))
-		{
-			return bounds;
-		}
-		bounds = rest;
-	}
+	return withoutStrays(preciseBounds(level), level.triangles.size(), boxesOf(level), weightsOf(level), 1.0 / 2000.0);
+}
+
+Bounds preciseBounds(std::size_t count, const BoxOf& boxOf, const WeightOf& weightOf)
+{
+	const Bounds all = boundsOf(count, boxOf);
+	const Bounds main = withoutStrays(all, count, boxOf, weightOf, 1.0 / 20.0);
+	return glm::distance(all.least, all.most) > 1000.0 * glm::distance(main.least, main.most) ? main : all;
+}
+
+Bounds preciseBounds(const Level& level)
+{
+	return preciseBounds(level.triangles.size(), boxesOf(level), weightsOf(level));
 }
 
 double alphaAt(const Mask& mask, glm::dvec2 uv)

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -125,7 +126,14 @@ Bounds boundsOf(const Level& level);
 Bounds boundsOf(const Level& level, std::size_t triangle);
 Bounds boundsOf(const Level& level, const Mesh& mesh);
 
-// Bounding box without strays: if dropping the triangles at both ends of each axis, 1/2000 of the area each, more than halves the
+// The box that 32-bit positions go by: that of everything, or if strays with up to a twentieth of the area at each end make it a
+// thousand times as large, that of the rest. Also for `count` boxes, with weights for areas.
+using BoxOf = std::function<Bounds(std::size_t)>;
+using WeightOf = std::function<double(std::size_t)>;
+Bounds preciseBounds(const Level& level);
+Bounds preciseBounds(std::size_t count, const BoxOf& boxOf, const WeightOf& weightOf);
+
+// That box without strays: if dropping the triangles at both ends of each axis, 1/2000 of the area each, more than halves the
 // diagonal, the box of the rest, and so on.
 Bounds mainBounds(const Level& level);
 

@@ -172,7 +172,7 @@ class Writer
 public:
 	// `places`: null, or filled with where the level's vertices are; surroundings then stay out.
 	Writer(const Level& level, std::vector<GltfPlace>* places)
-		: m_level(level), m_places(places), m_origin(glbOrigin(boundsOf(level))), m_materials(level, places != nullptr)
+		: m_level(level), m_places(places), m_origin(glbOrigin(preciseBounds(level))), m_materials(level, places != nullptr)
 	{
 		m_slot.resize(level.positions.size());
 		m_slot_of.resize(level.positions.size(), 0);

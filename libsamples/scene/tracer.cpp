@@ -2,11 +2,12 @@
 // Rays with Embree 3 or 4 (I. Wald, S. Woop, C. Benthin, G. Johnson, M. Ernst, "Embree: A Kernel Framework for Efficient CPU Ray
 // Tracing", 2014).
 //
-// Rays are traced in 32 bits relative to the centre of the level's bounds; R is the largest coordinate there. The error of the
-// distance between a ray's origin and a plane of the level, with u = 2⁻²⁴ and lengths of at most 2R: rounding the vertices u·R,
-// rounding the origin u·R, the difference vertex − origin 2u·R, the scalar product with the normal and the normal's own rounding
-// 12u·R to first order (three products and two sums, of factors that are off by 2u), rounding the direction 7u·R by the time the
-// ray leaves the level. Together 23u·R for each of the three axes.
+// Rays are traced in 32 bits relative to the centre of the level's bounds; R is the largest coordinate there. (Strays more than a
+// thousand times as far away do not count, so rays from them are less precise.) The error of the distance between a ray's origin
+// and a plane of the level, with u = 2⁻²⁴ and lengths of at most 2R: rounding the vertices u·R, rounding the origin u·R, the
+// difference vertex − origin 2u·R, the scalar product with the normal and the normal's own rounding 12u·R to first order (three
+// products and two sums, of factors that are off by 2u), rounding the direction 7u·R by the time the ray leaves the level. Together
+// 23u·R for each of the three axes.
 //
 // The last of the 32 bits depend on the processor, because Embree selects instructions with or without fused multiply-add. So they
 // must not decide anything. The tree holds slightly enlarged triangles, so that rounding loses no hit; hits near an edge, near the
@@ -189,14 +190,19 @@ RTCDevice newEmbreeDevice()
 constexpr double kCellsOfReach = 4.0; // smaller cells are tighter, but there are more of them
 constexpr double kMostCells = 1 << 18;
 
+// `from_centre`: the largest coordinates.
+double errorAt(glm::dvec3 from_centre)
+{
+	return std::sqrt(3.0) * 23.0 * kUnitRoundoff * std::max({from_centre.x, from_centre.y, from_centre.z});
+}
+
 } // namespace
 
 // The tree, and the filters of its hits.
 
 double errorOfRays(const Bounds& bounds)
 {
-	const glm::dvec3 half = 0.5 * (bounds.most - bounds.least);
-	return std::sqrt(3.0) * 23.0 * kUnitRoundoff * std::max({half.x, half.y, half.z});
+	return errorAt(0.5 * (bounds.most - bounds.least));
 }
 
 struct Tracer::Data
@@ -344,8 +350,9 @@ struct Tracer::Data
 	void fill(int threads, const Vicinity* near, std::span<const uint8_t> occluders)
 	{
 		bounds = boundsOf(level);
-		centre = 0.5 * (bounds.least + bounds.most);
-		error = errorOfRays(bounds);
+		const Bounds precise = preciseBounds(level);
+		centre = 0.5 * (precise.least + precise.most);
+		error = errorOfRays(precise);
 		opaque.triangles.reserve(level.triangles.size());
 		for (std::size_t i = 0; i < level.triangles.size(); ++i)
 		{
@@ -373,7 +380,9 @@ struct Tracer::Data
 						   // Along a surface rounding moves less than through it: at most 20u·R, from the vertices, the origin and
 						   // two products. Enlarging by less than a ray's origin is lifted keeps the origin out of these boxes,
 						   // which would take half of the time.
-						   const LargerTriangle larger = enlarge(level, part.triangles[i], 0.5 * error);
+						   const Bounds box = boundsOf(level, part.triangles[i]);
+						   const glm::dvec3 away = glm::max(glm::abs(box.least - centre), glm::abs(box.most - centre));
+						   const LargerTriangle larger = enlarge(level, part.triangles[i], 0.5 * std::max(error, errorAt(away)));
 						   float* to = part.vertices.data() + 9 * i;
 						   for (const glm::dvec3& corner : larger.corners)
 						   {

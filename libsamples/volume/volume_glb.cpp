@@ -35,13 +35,15 @@ constexpr int kIndexData = 34963;
 
 glm::dvec3 originOf(const VolumeSet& volumes)
 {
-	Bounds bounds;
-	for (const VolumeCluster& cluster : volumes.clusters)
+	const auto boxOf = [&](std::size_t i)
 	{
-		bounds.least = glm::min(bounds.least, cluster.least);
-		bounds.most = glm::max(bounds.most, cluster.most);
-	}
-	return glbOrigin(bounds); // 0 without clusters
+		return Bounds{volumes.clusters[i].least, volumes.clusters[i].most};
+	};
+	const auto polygonsOf = [&](std::size_t i)
+	{
+		return volumes.clusters[i].polygon_count;
+	};
+	return glbOrigin(preciseBounds(volumes.clusters.size(), boxOf, polygonsOf)); // 0 without clusters
 }
 
 class Writer

@@ -332,7 +332,7 @@ TEST_CASE("tracer: strays a thousand times as far away do not blur the rest", "[
 	const glm::dvec3 above(0.0, 200.0, 0.0);
 	CHECK(after.nearest(above, glm::normalize(far - above), 3e7).triangle >= level.triangles.size() - 2);
 	CHECK(glbOrigin(preciseBounds(level)) == glm::dvec3(0.0));
-	// As many there as here: then all is precise to the size of the whole.
+	// With as many triangles there as here, all is precise to the size of the whole.
 	const std::size_t triangles = level.triangles.size();
 	for (std::size_t i = 0; i < triangles; ++i)
 	{

@@ -133,8 +133,8 @@ using WeightOf = std::function<double(std::size_t)>;
 Bounds preciseBounds(const Level& level);
 Bounds preciseBounds(std::size_t count, const BoxOf& boxOf, const WeightOf& weightOf);
 
-// That box without strays: if dropping the triangles at both ends of each axis, 1/2000 of the area each, more than halves the
-// diagonal, the box of the rest, and so on.
+// Also without strays that are closer: drops the triangles at both ends of each axis, 1/2000 of the area each, as long as that more
+// than halves the diagonal.
 Bounds mainBounds(const Level& level);
 
 // Alpha of a mask at texture coordinates (u, v), in [0, 1], magnified like a texture unit with the mask's filter.

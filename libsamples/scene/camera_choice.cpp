@@ -3,9 +3,10 @@
 // each showing something new.
 //
 // Candidates. In levels: above floors, found by rays from above through all storeys, with ground around and head room; at standing
-// height, and about three times as high. Around objects (nothing to stand on, less than 2 m in total, or standing views that score
-// less than 0.65 times as much, or show mostly the backs of a hollow object), and if standing views show too little: from outside,
-// on a sphere, at a distance that shows the whole object, and closer. Last, close to the largest triangles.
+// height (half of it in low rooms), and about three times as high. Around objects (nothing to stand on, less than 2 m in total, or
+// standing views that score less than 0.65 times as much, or show mostly the backs of a hollow object), and if standing views show
+// too little: from outside, on a sphere, at a distance that shows the whole object, and closer. Last, close to the largest
+// triangles.
 //
 // Score of a picture of 32 × 18 rays, 60° high:
 //     place × seen × clear × facing × varied × (0.25 depths + 0.20 normals + 0.30 edges + 0.25 creases)

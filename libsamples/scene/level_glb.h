@@ -40,8 +40,8 @@ std::string glbContainer(std::string text, std::string_view chunk, std::string_v
 // A PNG of a picture with a mask, scaled to its size, as one of its channels: red 0 … alpha 3.
 std::string pngWithChannel(const Image& image, std::size_t channel, const Mask& mask);
 
-// Returns that centre in whole metres; 0 if all coordinates are smaller or the bounds are empty. Of a level: of
-// preciseBounds().
+// Returns their centre in whole metres; 0 if all coordinates are smaller or the bounds are empty. Files of a level have the origin
+// of preciseBounds().
 glm::dvec3 glbOrigin(const Bounds& bounds);
 
 // Meaning of baked values.

@@ -263,6 +263,34 @@ TEST_CASE("drop: out of sight of the cameras' boxes", "[volume_drop]")
 	}
 }
 
+TEST_CASE("drop: behind walls that the cameras' boxes do not see through", "[volume_drop]")
+{
+	// A hut on a floor, and a box in it whose volumes reach through the walls; its top is higher than that of a box outside.
+	Level level = emptyLevel();
+	addBox(level, {-1.0, 0.0, -1.0}, {1.0, 1.0, 1.0});
+	addQuad(level, {-1.0, 0.0, 1.0}, {2.0, 0.0, 0.0}, {0.0, 0.0, -2.0}); // its floor
+	for (const double turn : {0.0, 90.0, 180.0, 270.0})
+	{
+		const double s = std::sin(glm::radians(turn));
+		const double c = std::cos(glm::radians(turn));
+		addQuad(level, {c + 4.0 * s, 0.0, 4.0 * c - s}, {3.0 * c, 0.0, -3.0 * s}, {-8.0 * s, 0.0, -8.0 * c});
+	}
+	addBox(level, {-0.5, 0.1, -0.5}, {0.5, 0.6, 0.5});
+	addBox(level, {1.5, 0.1, -0.5}, {2.0, 0.5, 0.5});
+	DropSettings settings;
+	settings.inside = false;
+	const auto inTheHut = [&]
+	{
+		const Dropped result = drop(level, 2.0, settings);
+		CHECK(result.counts.kept > 20); // the hut, the floor and the box outside
+		return std::count_if(result.occluders.corners.begin(), result.occluders.corners.end(),
+							 [](const glm::dvec3& corner) { return std::fabs(corner.x) < 0.9 && std::fabs(corner.z) < 0.9; });
+	};
+	CHECK(inTheHut() > 0);
+	settings.visible_from = {{{-9.0, 2.0, -9.0}, {9.0, 9.0, 9.0}}};
+	CHECK(inTheHut() == 0);
+}
+
 TEST_CASE("volume tree: finds every triangle that a slow search finds", "[volume_drop]")
 {
 	const Level level = builtinLevel("suburb");
@@ -280,7 +308,7 @@ TEST_CASE("volume tree: finds every triangle that a slow search finds", "[volume
 			return reaches(region, {level.positions[corner.x], level.positions[corner.y], level.positions[corner.z]});
 		};
 		std::vector<uint32_t> found;
-		tree.visit(region.box, region.planes(),
+		tree.visit(region.box, region.planes(), corners[0],
 				   [&](uint32_t triangle)
 				   {
 					   if (reached(triangle))

@@ -6,6 +6,7 @@
 #include "core/archive.h"
 #include "core/lists.h"
 #include "core/work_units.h"
+#include "scene/ray_triangle.h"
 #include "volume/receivers.h"
 #include "volume/region.h"
 #include "volume/volumes.h"
@@ -18,6 +19,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -61,6 +63,7 @@ struct DropSearch
 
 	std::unique_ptr<TriangleTree> tree = nullptr;
 	ReceiverSides sides = {};
+	double step_m = 0.0;                                // between points of a polygon that rays start from
 	std::vector<double> areas = {};                     // per polygon, m²
 	std::vector<std::array<SideVerdict, 2>> found = {}; // front and back
 	std::vector<uint8_t> inside = {};                   // per polygon: inside solids
@@ -136,12 +139,17 @@ struct DropSearch
 		return true;
 	}
 
-	// Likewise for all triangles. Returns whether any triangle reaches into the region.
-	template <class Visit> bool forReceivers(std::size_t polygon, const VolumeRegion& region, Visit&& visit) const
+	// Likewise for all triangles, or those with a visible side, which is faster. Returns whether any of them reaches into the
+	// region.
+	template <class Visit>
+	bool forReceivers(std::size_t polygon, const VolumeRegion& region, bool only_visible, Visit&& visit) const
 	{
 		const std::span<const glm::dvec3> of = corners(polygon);
+		const glm::dvec3 centre = (of[0] + of[1] + of[2]) / 3.0; // the strongest are next to it
 		bool any = false;
-		tree->visit(region.box, region.planes(), [&](uint32_t triangle) { return forTriangle(of, region, triangle, any, visit); });
+		tree->visit(region.box, region.planes(), centre,
+					[&](uint32_t triangle)
+					{ return (only_visible && sides.seen[triangle] == 0) || forTriangle(of, region, triangle, any, visit); });
 		return any;
 	}
 };
@@ -152,23 +160,61 @@ std::string groupOfBlock(std::size_t block)
 	return "block " + std::to_string(block);
 }
 
+constexpr int kLifts = 4; // heights at which a simplified polygon may emerge from the surface
+
+// True if test(corners) holds for a side's corners. A simplified polygon may lie below the original surface: then also at several
+// heights, since the space in front may be narrow.
+template <class Test> bool anyLifted(const DropSearch& search, std::size_t polygon, unsigned side, Test&& test)
+{
+	bool holds = test(search.corners(polygon));
+	for (int part = 1; part <= kLifts && !holds && search.settings.simplified_m > 0.0; ++part)
+	{
+		const glm::dvec3 lift = part * search.settings.simplified_m / kLifts * search.normal(polygon, side);
+		holds = test(mapped(search.corners(polygon), [lift](const glm::dvec3& corner) { return corner + lift; }));
+	}
+	return holds;
+}
+
+// True if a side is in the cameras' sight, or sees a surface that is. What it would darken else lies behind something opaque.
+bool seesSight(const DropSearch& search, std::size_t polygon, unsigned side)
+{
+	const uint32_t triangle = search.occluders.polygons[polygon].triangle;
+	const glm::dvec3 normal = search.normal(polygon, side);
+	const bool is_front = glm::dot(twiceAreaOf(search.tracer.level(), triangle), normal) > 0.0;
+	return (search.sides.seen[triangle] & (is_front ? kFrontSeen : kBackSeen)) != 0 ||
+		   anyLifted(search, polygon, side,
+					 [&](std::span<const glm::dvec3> corners)
+					 {
+						 return seesReceiver(search.tracer, search.sides, corners, normal, search.step_m, search.distance_m,
+											 static_cast<uint32_t>(2 * polygon + side));
+					 });
+}
+
 SideVerdict find(const DropSearch& search, std::size_t polygon, unsigned side)
 {
+	const VolumeRegion region = search.region(polygon, side);
 	SideVerdict found = SideVerdict::alone;
-	const bool any = search.forReceivers(polygon, search.region(polygon, side),
-										 [&](const FoundReceiver& receiver)
-										 {
-											 found = std::max(found, receiver.verdict);
-											 return found != SideVerdict::needed;
-										 });
+	const auto look = [&](bool only_visible, SideVerdict enough)
+	{
+		return search.forReceivers(polygon, region, only_visible,
+								   [&](const FoundReceiver& receiver)
+								   {
+									   found = std::max(found, receiver.verdict);
+									   return found < enough;
+								   });
+	};
+	look(true, SideVerdict::needed);
+	if (found == SideVerdict::needed)
+	{
+		return search.settings.visible_from.empty() || seesSight(search, polygon, side) ? found : SideVerdict::unseen;
+	}
+	const bool any = look(false, SideVerdict::unseen);
 	return found == SideVerdict::alone && any ? SideVerdict::convex : found;
 }
 
 // Cost per polygon in microseconds, measured on Sponza; a reference ray costs about one.
 constexpr double kReceiversCost = 10.0;
 constexpr double kSolidsCost = 4.0;
-
-constexpr int kLifts = 4; // heights at which a simplified polygon may emerge from the surface
 
 void findReceivers(DropSearch& search, const RunSettings& run)
 {
@@ -187,23 +233,14 @@ void findReceivers(DropSearch& search, const RunSettings& run)
 
 void findInside(DropSearch& search)
 {
-	const Bounds bounds = mainBounds(search.tracer.level());
-	const double step_m = 0.005 * glm::length(bounds.most - bounds.least);
-	const auto is_open_over = [&](std::span<const glm::dvec3> corners, std::size_t i, unsigned side)
-	{
-		return isOpen(search.tracer, search.sides.materials, corners, search.normal(i, side), step_m,
-					  static_cast<uint32_t>(2 * i + side));
-	};
-	// A simplified polygon may lie below the original surface; try several heights, since the space in front may be narrow.
 	const auto is_open = [&](std::size_t i, unsigned side)
 	{
-		bool open = is_open_over(search.corners(i), i, side);
-		for (int part = 1; part <= kLifts && !open && search.settings.simplified_m > 0.0; ++part)
-		{
-			const glm::dvec3 lift = part * search.settings.simplified_m / kLifts * search.normal(i, side);
-			open = is_open_over(mapped(search.corners(i), [lift](const glm::dvec3& corner) { return corner + lift; }), i, side);
-		}
-		return open;
+		return anyLifted(search, i, side,
+						 [&](std::span<const glm::dvec3> corners)
+						 {
+							 return isOpen(search.tracer, search.sides.materials, corners, search.normal(i, side), search.step_m,
+										   static_cast<uint32_t>(2 * i + side));
+						 });
 	};
 	runStage({"solids", search.blocks(), [&](std::size_t block) { return kSolidsCost * search.sizeOf(block); },
 			  [&](std::size_t block)
@@ -286,6 +323,8 @@ void start(DropSearch& search)
 {
 	const std::size_t count = search.occluders.polygons.size();
 	search.counts.polygons = count;
+	const Bounds bounds = mainBounds(search.tracer.level());
+	search.step_m = 0.005 * glm::length(bounds.most - bounds.least);
 	search.counts.triangles = search.tracer.level().triangles.size();
 	search.areas.resize(count);
 	for (std::size_t i = 0; i < count; ++i)
@@ -311,18 +350,14 @@ struct Loss
 // `below`.
 double lossesOf(const DropSearch& search, std::size_t polygon, std::vector<Loss>& losses)
 {
+	constexpr std::size_t kFirst = 64;   // receivers of each side: one of them nearly always loses too much
 	thread_local uint32_t strongest = 0; // the triangle that lost most by the last polygon: often a neighbour
 	strongest = std::min(strongest, static_cast<uint32_t>(search.sides.there.size() - 1)); // of another level
 	double most = 0.0;
-	for (unsigned side = 0; side < 2; ++side)
+	// Asks up to `count` receivers of a side, the nearest first.
+	const auto ask = [&](unsigned side, std::size_t count)
 	{
-		if (search.found[polygon][side] != SideVerdict::needed)
-		{
-			continue;
-		}
 		const VolumeRegion region = search.region(polygon, side);
-		const std::size_t before = losses.size();
-		const double most_before = most;
 		const auto alpha = static_cast<double>(search.occluders.polygons[polygon].alpha);
 		const auto add = [&](const FoundReceiver& found)
 		{
@@ -336,20 +371,29 @@ double lossesOf(const DropSearch& search, std::size_t polygon, std::vector<Loss>
 			{
 				losses.push_back({2 * found.triangle + found.side, static_cast<float>(share * (1.0 + 0x1p-22))});
 			}
-			return most <= search.settings.below;
+			return most <= search.settings.below && --count > 0;
 		};
 		bool any = false;
-		const bool goes_on = search.forTriangle(search.corners(polygon), region, strongest, any, add);
-		losses.resize(before); // only a short cut
-		most = goes_on ? most_before : most;
-		if (goes_on)
+		if (count > kFirst || search.forTriangle(search.corners(polygon), region, strongest, any, add))
 		{
-			search.forReceivers(polygon, region, add);
+			search.forReceivers(polygon, region, true, add);
+		}
+	};
+	for (const std::size_t count : {kFirst, std::numeric_limits<std::size_t>::max()})
+	{
+		losses.clear();
+		most = 0.0;
+		for (unsigned side = 0; side < 2 && most <= search.settings.below; ++side)
+		{
+			if (search.found[polygon][side] == SideVerdict::needed)
+			{
+				ask(side, count);
+			}
 		}
 		if (most > search.settings.below)
 		{
 			losses.clear();
-			return most;
+			break;
 		}
 	}
 	return most;

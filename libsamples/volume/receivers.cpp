@@ -125,17 +125,59 @@ bool isInSight(const Tracer& tracer, std::span<const Bounds> boxes, uint32_t tri
 		const glm::dvec3 eye = pointIn(boxes[static_cast<std::size_t>(i) % boxes.size()], random);
 		const double u = random.uniform();
 		const double v = random.uniform();
-		const glm::dvec3 way = pointOf(corners, u, v) - eye;
-		if (glm::dot(way, normal) < 0.0)
+		const glm::dvec3 point = pointOf(corners, u, v) + 2.0 * tracer.error() * normal;
+		// From the surface: what is hidden is mostly so by something near.
+		if (glm::dot(eye - point, normal) > 0.0 && !tracer.blocked(point, eye))
 		{
-			const RayHit hit = tracer.nearest(eye, way, 2.0);
-			if (hit.hit && (hit.triangle == triangle || std::fabs(hit.distance - 1.0) * glm::length(way) < 2.0 * tracer.error()))
-			{
-				return true;
-			}
+			return true;
 		}
 	}
 	return false;
+}
+
+// Takes from the sides that no ray found those next to a visible one that faces the same octant: small triangles at the end of a
+// gap are hit by few rays, but together by many.
+void keepBesideSeen(const Tracer& tracer, const ReceiverSides& sides, std::vector<uint8_t>& unseen, const RunSettings& run)
+{
+	const Level& level = tracer.level();
+	const Bounds bounds = mainBounds(level);
+	const double cell_m = 0.002 * glm::length(bounds.most - bounds.least);
+	const auto cellOf = [&](std::size_t triangle, bool front)
+	{
+		const std::array<glm::dvec3, 3> corners = cornersOf(level, triangle);
+		const glm::dvec3 across = (front ? 1.0 : -1.0) * acrossOf(corners);
+		const glm::dvec3 at = (corners[0] + corners[1] + corners[2]) / (3.0 * cell_m);
+		uint64_t cell = 0;
+		for (int axis = 0; axis < 3; ++axis)
+		{
+			const auto along = static_cast<uint64_t>(static_cast<int64_t>(std::floor(at[axis])) & 0xfffff);
+			cell = cell << 21U | along << 1U | (across[axis] > 0.0 ? 1U : 0U);
+		}
+		return cell;
+	};
+	std::vector<uint64_t> seen;
+	for (std::size_t i = 0; i < unseen.size(); ++i)
+	{
+		for (unsigned side = 0; side < 2; ++side)
+		{
+			if ((static_cast<unsigned>(sides.seen[i] & ~unseen[i]) >> side & 1U) != 0)
+			{
+				seen.push_back(cellOf(i, side == 0));
+			}
+		}
+	}
+	std::sort(seen.begin(), seen.end());
+	parallelForAll(unseen.size(), run.threads,
+				   [&](std::size_t i)
+				   {
+					   for (unsigned side = 0; side < 2; ++side)
+					   {
+						   if ((unseen[i] >> side & 1U) != 0 && std::binary_search(seen.begin(), seen.end(), cellOf(i, side == 0)))
+						   {
+							   unseen[i] &= static_cast<uint8_t>(~(1U << side));
+						   }
+					   }
+				   });
 }
 
 void leaveOutOfSight(const Tracer& tracer, const SideSettings& settings, ReceiverSides& sides, const RunSettings& run)
@@ -176,6 +218,7 @@ void leaveOutOfSight(const Tracer& tracer, const SideSettings& settings, Receive
 		sides.check_missed += side != UINT64_MAX && (unseen[side / 2] & bit) != 0 ? 1U : 0U;
 		met[side == UINT64_MAX ? 0 : side / 2] |= side == UINT64_MAX ? uint8_t{0} : bit;
 	}
+	keepBesideSeen(tracer, sides, unseen, run);
 	for (std::size_t i = 0; i < met.size(); ++i)
 	{
 		const auto out = static_cast<uint8_t>(unseen[i] & ~met[i]);
@@ -642,7 +685,8 @@ ReceiverSides receiverSides(const Tracer& tracer, const SideSettings& settings, 
 std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::span<const Bounds> boxes, const RunSettings& run)
 {
 	constexpr std::size_t kLooks = 400'000;
-	constexpr double kLarge = 4.0; // times the mean area
+	constexpr double kLarge = 4.0;   // times the mean area
+	constexpr std::size_t kFew = 16; // triangles of a piece that are asked first
 	constexpr std::size_t kFirstSample = 512;
 	constexpr double kClearly = 0.03; // of a piece's area in the first sample
 	constexpr std::size_t kSample = 4096;
@@ -667,9 +711,9 @@ std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::spa
 		const bool seen = sides.there[i] != 0 && (sides.seen[i] & kBackSeen) != 0;
 		found[piece_of[i]].needed += seen ? glm::length(acrossOf(cornersOf(level, i))) : 0.0;
 	}
-	// Per piece, the area whose backs see a receiver, from all large triangles and a sample of the others; 0 for pieces with fewer
-	// triangles and for those known to be needed.
-	const auto areasThatSee = [&](std::size_t sample, std::size_t fewest)
+	// Per piece, the area whose backs see a receiver, from all large triangles and a sample of the others, which stand for the rest
+	// if `scaled`; 0 for pieces with fewer triangles and for those known to be needed.
+	const auto areasThatSee = [&](std::size_t sample, std::size_t fewest, bool scaled)
 	{
 		std::vector<double> areas(count, 0.0);
 		inBlocks(count, 256, run, "backs",
@@ -688,7 +732,7 @@ std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::spa
 					 const std::size_t every = large ? 1 : std::max<std::size_t>(1, piece.triangles / sample);
 					 const bool sees = i % every == 0 && seesReceiver(tracer, sides, corners, -across / area, distance_m,
 																	  distance_m, static_cast<uint32_t>(i));
-					 areas[i] = sees ? area * static_cast<double>(every) : 0.0;
+					 areas[i] = sees ? area * static_cast<double>(scaled ? every : 1) : 0.0;
 				 });
 		std::vector<double> sums(found.size(), 0.0);
 		for (std::size_t i = 0; i < count; ++i)
@@ -697,16 +741,16 @@ std::vector<uint8_t> idleBacks(const Tracer& tracer, double distance_m, std::spa
 		}
 		return sums;
 	};
-	const std::vector<double> first_look = areasThatSee(kFirstSample, 2 * kFirstSample);
-	for (std::size_t k = 0; k < found.size(); ++k)
+	const auto decide = [&](const std::vector<double>& areas, double clearly)
 	{
-		found[k].needed += first_look[k] > kClearly * found[k].area ? first_look[k] : 0.0;
-	}
-	const std::vector<double> second_look = areasThatSee(kSample, 0);
-	for (std::size_t k = 0; k < found.size(); ++k)
-	{
-		found[k].needed += second_look[k];
-	}
+		for (std::size_t k = 0; k < found.size(); ++k)
+		{
+			found[k].needed += areas[k] > clearly * found[k].area ? areas[k] : 0.0;
+		}
+	};
+	decide(areasThatSee(kFew, 2 * kFew, false), kNeeded);
+	decide(areasThatSee(kFirstSample, 2 * kFirstSample, true), kClearly);
+	decide(areasThatSee(kSample, 0, true), 0.0);
 	const auto isIdle = [&](std::size_t i)
 	{
 		const SurfacePiece& piece = found[piece_of[i]];

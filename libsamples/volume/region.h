@@ -36,8 +36,8 @@ public:
 	TriangleTree(const Level& level, std::span<const uint8_t> counted, int threads);
 
 	// Calls visit(triangle), until it returns false, for every triangle whose box intersects `box` and is not entirely outside one
-	// of the half-spaces; returns false if visit did. Roughly in order of distance from the box's centre.
-	template <class Visit> bool visit(const Bounds& box, std::span<const HalfSpace> volume, Visit&& visit) const;
+	// of the half-spaces; returns false if visit did. Roughly in order of distance from `centre`.
+	template <class Visit> bool visit(const Bounds& box, std::span<const HalfSpace> volume, glm::dvec3 centre, Visit&& visit) const;
 
 private:
 	struct Range;
@@ -85,11 +85,11 @@ inline bool TriangleTree::meets(const Node& node, const Bounds& box, std::span<c
 	return true;
 }
 
-template <class Visit> bool TriangleTree::visit(const Bounds& box, std::span<const HalfSpace> volume, Visit&& visit) const
+template <class Visit>
+bool TriangleTree::visit(const Bounds& box, std::span<const HalfSpace> volume, glm::dvec3 centre, Visit&& visit) const
 {
 	std::array<uint32_t, 64> stack{}; // 2³² triangles have a depth of 32
 	std::size_t size = 0;
-	const glm::dvec3 middle = 0.5 * (box.least + box.most);
 	if (!m_nodes.empty())
 	{
 		stack[size++] = 0;
@@ -104,7 +104,7 @@ template <class Visit> bool TriangleTree::visit(const Bounds& box, std::span<con
 		}
 		if (node.count == 0)
 		{
-			const bool swap = distance2(m_nodes[node.first], middle) < distance2(m_nodes[at + 1], middle);
+			const bool swap = distance2(m_nodes[node.first], centre) < distance2(m_nodes[at + 1], centre);
 			stack[size++] = swap ? at + 1 : node.first;
 			stack[size++] = swap ? node.first : at + 1;
 			continue;

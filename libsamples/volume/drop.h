@@ -21,10 +21,10 @@ struct DropSettings
 	bool inside = true;        // drop polygons inside solids, and ignore receivers there (sampled)
 	double simplified_m = 0.0; // ≥ 0: how far simplification moved surfaces; points this far in front of a side belong to it
 	double below = 0.0; // drop the smallest contributions as long as no receiver loses more than this in total; 0: none; at most 1
-	bool smooth_normals = true; // receivers may have interpolated normals; else only face normals
-	std::vector<Bounds>
-		visible_from;   // boxes that contain all cameras; receivers not visible from them are ignored. Empty: cameras anywhere
-	int seen_rays = 64; // rays per triangle before it counts as invisible from the boxes, ≥ 1
+	bool smooth_normals = true;       // receivers may have interpolated normals; else only face normals
+	std::vector<Bounds> visible_from; // boxes that contain all cameras; receivers not visible from them are ignored, and so are
+									  // polygons that see none of the others (sampled). Empty: cameras anywhere
+	int seen_rays = 64;             // rays per triangle before it counts as invisible from the boxes, ≥ 1
 	std::vector<uint8_t> receivers; // 1 for each triangle whose darkening counts; empty: all
 };
 
@@ -36,7 +36,7 @@ struct DropCounts
 	uint64_t convex = 0;         // dropped: no surface in their volume has them above its tangent plane
 	uint64_t alone = 0;          // dropped: no surface in their volume
 	uint64_t enclosed = 0;       // dropped: darken only receivers inside solids
-	uint64_t unseen = 0;         // dropped: darken only what is invisible from the boxes
+	uint64_t unseen = 0;         // dropped: see only what is invisible from the boxes, or have only that in their volume
 	uint64_t below = 0;          // dropped: contributions too small
 	uint64_t turned = 0;         // made one-sided
 	double area_m2 = 0.0;        // total area of the input polygons

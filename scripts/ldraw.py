@@ -25,14 +25,14 @@ class Reader:
 
     def read_model(self, path):
         """Adds the files of a model, and returns the name of the first."""
-        first = name = "model"
+        first, name = None, "model"
         for line in pathlib.Path(path).read_text(errors="replace").splitlines():
             words = line.split()
             if words[:2] == ["0", "FILE"]:
                 name = key(" ".join(words[2:]))
-                first = name if first == "model" and not self.files else first
+                first = first or name
             self.files.setdefault(name, []).append(line)
-        return first
+        return first or name
 
     def lines(self, name):
         if name not in self.files:

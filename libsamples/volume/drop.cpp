@@ -175,8 +175,9 @@ template <class Test> bool anyLifted(const DropSearch& search, std::size_t polyg
 	return holds;
 }
 
-// True if a side is in the cameras' sight, or sees a surface that is. What it would darken else lies behind something opaque.
-bool seesSight(const DropSearch& search, std::size_t polygon, unsigned side)
+// True if the cameras see a side, or it sees a surface that they see. Otherwise something opaque lies between it and all visible
+// surfaces in its volume.
+bool darkensVisible(const DropSearch& search, std::size_t polygon, unsigned side)
 {
 	const uint32_t triangle = search.occluders.polygons[polygon].triangle;
 	const glm::dvec3 normal = search.normal(polygon, side);
@@ -206,9 +207,9 @@ SideVerdict find(const DropSearch& search, std::size_t polygon, unsigned side)
 	look(true, SideVerdict::needed);
 	if (found == SideVerdict::needed)
 	{
-		return search.settings.visible_from.empty() || seesSight(search, polygon, side) ? found : SideVerdict::unseen;
+		return search.settings.visible_from.empty() || darkensVisible(search, polygon, side) ? found : SideVerdict::unseen;
 	}
-	const bool any = look(false, SideVerdict::unseen);
+	const bool any = look(false, SideVerdict::unseen); // why it is dropped, for the counts
 	return found == SideVerdict::alone && any ? SideVerdict::convex : found;
 }
 

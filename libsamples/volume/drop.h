@@ -24,8 +24,8 @@ struct DropSettings
 	bool smooth_normals = true;       // receivers may have interpolated normals; else only face normals
 	std::vector<Bounds> visible_from; // boxes that contain all cameras; receivers not visible from them are ignored, and so are
 									  // polygons that see none of the others (sampled). Empty: cameras anywhere
-	int seen_rays = 64;             // rays per triangle before it counts as invisible from the boxes, ≥ 1
-	std::vector<uint8_t> receivers; // 1 for each triangle whose darkening counts; empty: all
+	int seen_rays = 64;               // rays per triangle before it counts as invisible from the boxes, ≥ 1
+	std::vector<uint8_t> receivers;   // 1 for each triangle whose darkening counts; empty: all
 };
 
 struct DropCounts

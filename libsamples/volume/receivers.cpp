@@ -135,8 +135,8 @@ bool isInSight(const Tracer& tracer, std::span<const Bounds> boxes, uint32_t tri
 	return false;
 }
 
-// Takes from the sides that no ray found those next to a visible one that faces the same octant: small triangles at the end of a
-// gap are hit by few rays, but together by many.
+// Clears the bits of unseen sides that are in one cell with a visible side and face the same octant: few rays hit each small
+// triangle at the end of a gap, but many hit all of them.
 void keepBesideSeen(const Tracer& tracer, const ReceiverSides& sides, std::vector<uint8_t>& unseen, const RunSettings& run)
 {
 	const Level& level = tracer.level();

@@ -122,7 +122,7 @@ fails 1 '--no-merge: found with --flat or --extent, expected one or the other' v
 fails 1 '--no-merge: found with --flat or --extent, expected one or the other' volumes builtin:cornell --distance 1 --extent 4 --no-merge -o v.glb
 fails 1 '--sides: found' volumes builtin:cornell --distance 1 --sides none -o v.glb
 fails 1 '--no-drop: found with' volumes builtin:cornell --distance 1 --no-drop --drop-below 1/512 -o v.glb
-for box in 1 1,2,3,4,5 1,2,3,0,5,6 1,2,3,4,5,nan a,b,c,d,e,f 1,2,3,4,5,6,7; do
+for box in 1 Outside outside,1 1,2,3,4,5 1,2,3,0,5,6 1,2,3,4,5,nan a,b,c,d,e,f 1,2,3,4,5,6,7; do
 	fails 1 "--visible-from: found '$box'" volumes builtin:cornell --distance 1 --visible-from $box -o v.glb
 done
 for size in 0 -1 1TB x 9999999999GiB; do
@@ -184,4 +184,17 @@ polygons 1 --occluders Wall --receivers Floor
 polygons 2 --ignore Shelf
 fails 1 '--receivers: found with --keep-unlit' volumes kept_parts.obj --distance 1 --receivers Wall --keep-unlit -o v.glb
 fails 1 "--receivers: found 'Wal'" volumes kept_parts.obj --distance 1 --receivers Wal -o v.glb
+
+# Cameras outside do not see into a hut without doors.
+{
+	printf 'v -4 0 4\nv 4 0 4\nv 4 0 -4\nv -4 0 -4\nf 1 2 3 4\n'
+	for r in 1 0.9; do
+		printf "v -$r 0 $r\nv $r 0 $r\nv $r 0 -$r\nv -$r 0 -$r\nv -$r 2 $r\nv $r 2 $r\nv $r 2 -$r\nv -$r 2 -$r\n"
+	done
+	printf 'f 5 6 10 9\nf 6 7 11 10\nf 7 8 12 11\nf 8 5 9 12\nf 9 10 11 12\n'
+	printf 'f 17 18 14 13\nf 18 19 15 14\nf 19 20 16 15\nf 20 17 13 16\nf 20 19 18 17\n'
+} >kept_parts.obj
+polygons 11
+polygons 9 --visible-from outside
+polygons 11 --visible-from outside --visible-from=-0.5,0.2,-0.4,0.5,1.8,0.4
 finish

@@ -90,12 +90,29 @@ glm::ivec2 sizeOf(const std::string& option, const std::string& text)
 	return {(*size)[0], (*size)[1]};
 }
 
-Bounds boxOf(const std::string& option, const std::string& text)
+namespace
+{
+
+Bounds boxFrom(const std::string& option, const std::string& text, const std::string& expected)
 {
 	const std::optional<std::array<double, 6>> numbers = numbersOf<double, 6>(text, -kFarthest_m, kFarthest_m);
 	refuseValueIf(!numbers || (*numbers)[0] > (*numbers)[3] || (*numbers)[1] > (*numbers)[4] || (*numbers)[2] > (*numbers)[5],
-				  option, text, "six numbers X,Y,Z,X,Y,Z, the least corner of a box first, metres");
+				  option, text, expected);
 	return {{(*numbers)[0], (*numbers)[1], (*numbers)[2]}, {(*numbers)[3], (*numbers)[4], (*numbers)[5]}};
+}
+
+const std::string kSixNumbers = "six numbers X,Y,Z,X,Y,Z, the least corner of a box first, metres";
+
+} // namespace
+
+Bounds boxOf(const std::string& option, const std::string& text)
+{
+	return boxFrom(option, text, kSixNumbers);
+}
+
+std::optional<Bounds> cameraBoxOf(const std::string& option, const std::string& text)
+{
+	return text == "outside" ? std::nullopt : std::optional(boxFrom(option, text, kSixNumbers + ", or outside"));
 }
 
 OptionRow partsRow(const std::string& name, std::vector<std::string>& patterns, const std::string& help, OptionRules rules)

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,9 @@ glm::ivec2 sizeOf(const std::string& option, const std::string& text);
 
 // "X,Y,Z,X,Y,Z": the least corner first, which the other is nowhere below. Throws Error (usage) of `option`.
 Bounds boxOf(const std::string& option, const std::string& text);
+
+// Likewise, or "outside" as none.
+std::optional<Bounds> cameraBoxOf(const std::string& option, const std::string& text);
 
 // --camera, --eye, --target, --fov, --near, --projection, --world-to-camera, --size, --allow-inside. Then checkCameras().
 void addCameraOptions(CLI::App& app, CameraOptions& options);

@@ -4,6 +4,7 @@
 #include "scene_options.h"
 
 #include "core/decimal.h"
+#include "core/lists.h"
 #include "core/work_units.h"
 #include "scene/tracer.h"
 #include "version.h"
@@ -31,6 +32,7 @@ struct VolumeOptions
 	VolumeSettings settings;
 	CurveMeasure measure = CompensateSettings{}.measure; // that --compensate fits to
 	bool no_drop = false;
+	bool outside = false; // a camera may be anywhere outside the level's bounds
 	VolumeFileSettings file;
 	std::vector<std::string> occluders;
 	std::vector<std::string> receivers;
@@ -107,24 +109,33 @@ std::vector<OptionRow> occluderRows(OccluderSettings& occluders, VolumeSettings&
 		 "(default: not)"}};
 }
 
-std::vector<OptionRow> dropRows(DropSettings& drop, bool& no_drop)
+std::vector<OptionRow> dropRows(VolumeOptions& options)
 {
-	return {
-		{"--no-drop", takesFlag(no_drop), "All volumes: the three --keep options in one",
-		 excludes("--drop-below or --flat-normals or --visible-from")},
-		{"--keep-unlit", takesFlag(drop.no_receiver, false),
-		 "Also volumes that darken nothing: no surface within them sees their polygon",
-		 excludes("--visible-from or --flat-normals")},
-		{"--keep-sides", takesFlag(drop.sides, false), "Also the sides of two-sided polygons that darken nothing"},
-		{"--keep-inside", takesFlag(drop.inside, false), "Also what lies inside solids, where no camera comes"},
-		{"--flat-normals", takesFlag(drop.smooth_normals, false),
-		 "For renderers that shade with the triangles' normals: what would darken nothing but surfaces whose normals are "
-		 "interpolated between vertices is dropped, too"},
-		{"--drop-below", takesParsed("SHARE", drop.below, shareUpToOne),
-		 "Drops the least contributions, as long as no receiver loses more occlusion than this in all: 1/512 (default: none)"},
-		{"--visible-from", takesEach("BOX", drop.visible_from, boxOf),
-		 "A box that holds cameras, may be repeated: volumes that darken only what none of them sees are dropped (default: cameras "
-		 "may be anywhere)"}};
+	DropSettings& drop = options.settings.drop;
+	const auto takeCameras = [&](const std::string& name, const std::string& text)
+	{
+		const std::optional<Bounds> box = cameraBoxOf(name, text);
+		if (box)
+		{
+			drop.visible_from.push_back(*box);
+		}
+		options.outside = options.outside || !box;
+	};
+	return {{"--no-drop", takesFlag(options.no_drop), "All volumes: the three --keep options in one",
+			 excludes("--drop-below or --flat-normals or --visible-from")},
+			{"--keep-unlit", takesFlag(drop.no_receiver, false),
+			 "Also volumes that darken nothing: no surface within them sees their polygon",
+			 excludes("--visible-from or --flat-normals")},
+			{"--keep-sides", takesFlag(drop.sides, false), "Also the sides of two-sided polygons that darken nothing"},
+			{"--keep-inside", takesFlag(drop.inside, false), "Also what lies inside solids, where no camera comes"},
+			{"--flat-normals", takesFlag(drop.smooth_normals, false),
+			 "For renderers that shade with the triangles' normals: what would darken nothing but surfaces whose normals are "
+			 "interpolated between vertices is dropped, too"},
+			{"--drop-below", takesParsed("SHARE", drop.below, shareUpToOne),
+			 "Drops the least contributions, as long as no receiver loses more occlusion than this in all: 1/512 (default: none)"},
+			{"--visible-from", takesEach("BOX", takeCameras),
+			 "A box that holds cameras, X,Y,Z,X,Y,Z, or outside, for cameras anywhere outside the level's bounds; may be repeated: "
+			 "volumes that darken only what none of them sees are dropped (default: cameras may be anywhere)"}};
 }
 
 void declare(CLI::App& app, VolumeOptions& options)
@@ -147,7 +158,7 @@ void declare(CLI::App& app, VolumeOptions& options)
 							  "(default: all)",
 							  excludes("--no-drop or --keep-unlit"))});
 	addOptions(app, occluderRows(settings.occluders, settings));
-	addOptions(app, dropRows(settings.drop, options.no_drop));
+	addOptions(app, dropRows(options));
 	addOptions(
 		app,
 		{{"--trim",
@@ -213,6 +224,10 @@ void run(VolumeOptions& options, VerbProgress& progress)
 	if (!occluding.empty())
 	{
 		settings.occluding = &part.emplace(partOf(loaded.level, occluding, how.threads)).level;
+	}
+	if (options.outside)
+	{
+		append(settings.drop.visible_from, boxesAround(loaded.level));
 	}
 	settings.drop.receivers = chosenTriangles(loaded.level, options.receivers, "receivers");
 	BuiltVolumes built = buildVolumes(loaded.level, settings, how);

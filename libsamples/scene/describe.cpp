@@ -185,6 +185,10 @@ void addAdvice(const LevelFacts& found, const AssetEstimate& masks, const AssetE
 	facts.line("suits: " + suits + ", since " + why);
 	facts.line(advice.bake ? "  nook bake makes the file; nook volumes --masks --detail auto errs less and takes more bytes"
 						   : "  nook volumes --masks makes the file, --method aov-mask draws it");
+	if (advice.bake)
+	{
+		facts.line("  nook volumes --visible-from outside drops what no camera beyond the bounds sees");
+	}
 }
 
 // The values of a channel, over all pixels.

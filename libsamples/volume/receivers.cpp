@@ -651,6 +651,22 @@ bool seesReceiver(const Tracer& tracer, const ReceiverSides& sides, std::span<co
 					[&](glm::dvec3 point, uint32_t turned) { return lookOut(tracer, point, normal, reach_m, turned, isReceiver); });
 }
 
+std::array<Bounds, 6> boxesAround(const Level& level)
+{
+	const Bounds inner = mainBounds(level);
+	const glm::dvec3 size = inner.most - inner.least;
+	const double thick_m = 3.0 * std::max({size.x, size.y, size.z});
+	const Bounds outer{inner.least - thick_m, inner.most + thick_m};
+	std::array<Bounds, 6> boxes;
+	boxes.fill(outer);
+	for (int axis = 0; axis < 3; ++axis)
+	{
+		boxes[static_cast<std::size_t>(2 * axis)].most[axis] = inner.least[axis];
+		boxes[static_cast<std::size_t>(2 * axis + 1)].least[axis] = inner.most[axis];
+	}
+	return boxes;
+}
+
 ReceiverSides receiverSides(const Tracer& tracer, const SideSettings& settings, const RunSettings& run)
 {
 	const Level& level = tracer.level();

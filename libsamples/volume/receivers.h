@@ -53,6 +53,10 @@ private:
 	glm::dmat4 m_world_from_camera;
 };
 
+// Six boxes around a level, strays left out: one beyond each side of its bounds, three times as thick as the level's longest side.
+// They hold a point of every ray that comes from farther away, so they stand for cameras anywhere outside.
+std::array<Bounds, 6> boxesAround(const Level& level);
+
 struct SideSettings
 {
 	bool inside = true;            // exclude sides inside solids (sampled)

@@ -497,6 +497,7 @@ uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings)
 	const bool tracer = needsTracer(settings);
 	each += tracer ? 100U : 0U;                                                         // Embree's tree
 	each += dropsAnything(settings.drop) ? 150U : 0U;                                   // our tree and per-polygon results
+	each += settings.drop.visible_from.empty() ? 0U : 60U;                              // the tree of what the cameras see
 	each += settings.drop.below > 0.0 ? 150U : 0U;                                      // lists of receivers
 	each += settings.verify || settings.compensate || settings.detail_more ? 200U : 0U; // trees of volumes
 	const uint64_t shares =

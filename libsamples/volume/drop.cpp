@@ -62,6 +62,7 @@ struct DropSearch
 	const RunSettings& run;
 
 	std::unique_ptr<TriangleTree> tree = nullptr;
+	std::unique_ptr<TriangleTree> seen_tree = nullptr; // of triangles with a visible side; none if cameras may be anywhere
 	ReceiverSides sides = {};
 	double step_m = 0.0;                                // between points of a polygon that rays start from
 	std::vector<double> areas = {};                     // per polygon, m²
@@ -147,7 +148,8 @@ struct DropSearch
 		const std::span<const glm::dvec3> of = corners(polygon);
 		const glm::dvec3 centre = (of[0] + of[1] + of[2]) / 3.0; // the strongest are next to it
 		bool any = false;
-		tree->visit(region.box, region.planes(), centre,
+		const TriangleTree& among = only_visible && seen_tree ? *seen_tree : *tree;
+		among.visit(region.box, region.planes(), centre,
 					[&](uint32_t triangle)
 					{ return (only_visible && sides.seen[triangle] == 0) || forTriangle(of, region, triangle, any, visit); });
 		return any;
@@ -252,6 +254,14 @@ void findInside(DropSearch& search)
 			 search.run);
 }
 
+void buildSeenTree(DropSearch& search)
+{
+	if (!search.settings.visible_from.empty())
+	{
+		search.seen_tree = std::make_unique<TriangleTree>(search.tracer.level(), search.sides.seen, search.run.threads);
+	}
+}
+
 // A room whose walls face outwards, with the cameras inside, looks like one solid.
 void refuseInside(DropSearch& search)
 {
@@ -267,6 +277,7 @@ void refuseInside(DropSearch& search)
 		search.inside.assign(search.inside.size(), 0);
 		search.sides =
 			receiverSides(search.tracer, {false, search.settings.visible_from, search.settings.seen_rays, true}, search.run);
+		buildSeenTree(search);
 		findReceivers(search, withoutUnits(search.run)); // computed by no part
 	}
 }
@@ -466,6 +477,7 @@ Dropped dropVolumes(const Occluders& occluders, const Tracer& tracer, double dis
 			"sides", [&] { search.sides = receiverSides(tracer, sides, withoutUnits(run)); },
 			[&](Archive& archive) { archive(search.sides); }, run);
 		search.tree = std::make_unique<TriangleTree>(tracer.level(), search.sides.there, run.threads);
+		buildSeenTree(search);
 		findReceivers(search, run);
 	}
 	if (settings.inside)

@@ -10,6 +10,8 @@
 #include "volume/receivers.h"
 #include "volume/region.h"
 
+#include <glm/vector_relational.hpp>
+
 namespace
 {
 
@@ -294,6 +296,25 @@ TEST_CASE("drop: behind walls that the cameras' boxes do not see through", "[vol
 	settings.visible_from.clear();
 	append(settings.visible_from, boxesAround(level));
 	CHECK(inTheHut() == 0);
+}
+
+TEST_CASE("sides: the boxes around a level hold all points next to it, and none in it", "[volume_drop]")
+{
+	Level level = emptyLevel();
+	addBox(level, {1.0, 2.0, 3.0}, {2.0, 4.0, 6.0});
+	const auto boxes = boxesAround(level);
+	const auto isHeld = [&](glm::dvec3 at)
+	{
+		return std::any_of(boxes.begin(), boxes.end(),
+						   [at](const Bounds& box) {
+							   return glm::all(glm::greaterThanEqual(at, box.least)) && glm::all(glm::lessThanEqual(at, box.most));
+						   });
+	};
+	for (int i = 0; i < 27; ++i)
+	{
+		const glm::dvec3 away(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+		CHECK(isHeld(glm::dvec3(1.5, 3.0, 4.5) + 0.51 * away * glm::dvec3(1.0, 2.0, 3.0)) == (i != 13));
+	}
 }
 
 TEST_CASE("sides: small triangles at the end of a gap are seen together", "[volume_drop]")
